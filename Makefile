@@ -19,18 +19,21 @@ NAV2_DISTRO ?= $(or $(patsubst .interfaces-%,%,$(notdir $(firstword $(wildcard $
 LOCKS := deploy/requirements
 LOCK ?= requirements-dev.lock
 export NAV2_DISTRO
+CONSOLE := services/tms_ur/console
+BUILT := services/tms_ur/built/index.html
+NPM = cd $(CONSOLE) && PATH="$(abspath $(VENV))-console/bin:$$PATH" npm --silent
 UV := $(VENV)/bin/uv
 PY := $(VENV)/bin/python
 TMS := $(VENV)/bin/tms $(if $(SITE),--site $(SITE))
 # A sourced ROS installation would mix its libraries into the venv's.
 unexport PYTHONPATH LD_LIBRARY_PATH AMENT_PREFIX_PATH CMAKE_PREFIX_PATH _ROS_WHEELS_BOOTSTRAP_COMPLETE
 .DEFAULT_GOAL := help
-.PHONY: help setup interfaces locks demo test test-fast up down status logs restart lint conformance bench verify pictures soak drill simulate areas replay model traces mutants mutmut coverage nightly test-docker system containers clean
+.PHONY: help setup console console-types interfaces locks demo test test-fast up down status logs restart lint conformance bench verify pictures soak drill simulate areas replay model traces mutants mutmut coverage nightly test-docker system containers clean
 
 help: ## this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 14
 
-setup: $(VENV)/.ready $(VENV)-store/.ready ## everything that the other targets need (they call it)
+setup: $(VENV)/.ready $(VENV)-store/.ready $(BUILT) ## everything that the other targets need (they call it)
 	@$(PY) -m compileall -q -x 'services/interfaces' services tests  # where Python itself may not write it, each process would compile anew
 
 system:
@@ -48,6 +51,24 @@ $(VENV)-store/.ready: $(LOCKS)/requirements-store.lock | $(UV)
 	$(PYTHON) -m venv $(VENV)-store
 	$(UV) pip install -q --compile-bytecode -p $(VENV)-store/bin/python --require-hashes -r $(LOCKS)/requirements-store.lock
 	@touch $@
+
+# Node.js and the packages of the console have an environment of their own, and no script of a package runs. Node looks
+# for packages in the folders above a source, so there is a link to them.
+$(VENV)-console/.ready: $(LOCKS)/requirements-console.lock $(addprefix $(CONSOLE)/,package.json package-lock.json .npmrc) | $(UV)
+	$(PYTHON) -m venv $(VENV)-console
+	$(UV) pip install -q -p $(VENV)-console/bin/python --require-hashes -r $(LOCKS)/requirements-console.lock
+	cp $(filter $(CONSOLE)/%,$^) $(VENV)-console
+	cd $(VENV)-console && PATH="$(abspath $(VENV))-console/bin:$$PATH" npm ci --silent
+	@ln -sfn $(abspath $(VENV))-console/node_modules node_modules
+	@touch $@
+
+$(BUILT): $(VENV)-console/.ready $(shell find $(CONSOLE) -type f)
+	$(NPM) run build
+
+console: $(BUILT) ## build the pages of the console
+
+console-types: setup ## the API's types for the console, after a change of the API
+	@cd tests && $(abspath $(PY)) -m console_types
 
 $(VENV)/.interfaces-$(NAV2_DISTRO): $(VENV)/.requirements $(LOCKS)/build.lock $(LOCKS)/interfaces.txt $(shell find services/interfaces -type f -not -name '*.pyc')
 	@echo "building the ROS interface packages (two to three minutes)"
@@ -67,6 +88,7 @@ locks: | $(UV) ## lock the requirements of deploy/requirements/*.in anew (UPGRAD
 	$(COMPILE) --generate-hashes requirements.in -o requirements.lock
 	$(COMPILE) --generate-hashes requirements-dev.in -o requirements-dev.lock
 	$(COMPILE) --generate-hashes requirements-store.in -o requirements-store.lock
+	$(COMPILE) --generate-hashes requirements-console.in -o requirements-console.lock
 	$(COMPILE) build.in -o build.lock
 
 interfaces: $(VENV)/.interfaces-$(NAV2_DISTRO) ## build the .msg/.srv/.action packages (NAV2_DISTRO=humble for Humble machines)
@@ -103,13 +125,16 @@ restart: setup ## restart one process (P=name)
 
 test: setup ## all tests that a laptop can run
 	@DOCKER=$(DOCKER) sh deploy/system-packages.sh test
+	@$(NPM) test
 	$(PY) -m pytest -n 4 --dist loadfile --no-loadscope-reorder tests  # some of them wait more than they work
 
 test-fast: setup ## unit, contract and conformance tests: no ROS processes, two minutes (WORKERS=2)
 	@DOCKER=$(DOCKER) sh deploy/system-packages.sh test
+	@$(NPM) test
 	$(PY) -m pytest -q -n $(WORKERS) tests/unit tests/contract tests/conformance
 
-lint: setup ## ruff, mypy, import-linter
+lint: setup ## ruff, mypy, import-linter; Biome and tsc
+	@$(NPM) run lint
 	$(VENV)/bin/ruff check .
 	$(VENV)/bin/ruff format --check .
 	$(VENV)/bin/mypy services
@@ -192,4 +217,4 @@ test-docker: setup containers ## a site of four PCs as containers; starts a Dock
 	  DOCKER=$(DOCKER) $(PY) -m pytest -p no:randomly -m docker -s --durations=0 tests/docker
 
 clean: down ## remove the environments and the demo's state (SITE=name: that site's)
-	rm -rf $(VENV) $(VENV)-store .state/$(basename $(notdir $(or $(SITE),demo)))
+	rm -rf $(VENV) $(VENV)-store $(VENV)-console node_modules $(dir $(BUILT)) .state/$(basename $(notdir $(or $(SITE),demo)))

@@ -28,10 +28,10 @@ LARGEST = 150_000  # bytes of a picture
 LIMIT = 60.0  # s for whatever must happen at all
 RUN_LIMIT = 600.0  # s for the run to end
 LOCALES = {"": "en-GB", ".ja": "ja-JP"}  # of the browser, by what the file's name ends with
-JAPANESE = {"run", "tree", "site"}  # pages, those of README.ja.md
+JAPANESE = {"board", "tree", "site"}  # pages, those of README.ja.md
 # What a page must show before its picture is taken; one that is not named here has a heading.
 SHOWN = {
-    "run": ("#list_active li", "#list_tasks tr", "#list_machines .card"),
+    "board": ("#list_active li", "#list_tasks li", "#list_machines .card"),
     "tree": ("#tree_box [data-state=running]",),
     "site": ("#map [data-machine]", "#arms svg"),
     "history": ("#list_history tr", "#past [data-path]"),
@@ -111,7 +111,7 @@ def take_all(browser: Browser, url: str, past: str) -> None:
 
 def wait_for_end(page: Page, url: str) -> None:
     """Until the machine stands again."""
-    page.goto(f"{url}/#run")
+    page.goto(f"{url}/#board")
     page.wait_for_selector("#list_machines .card", state="attached")  # the state has come
     page.wait_for_selector("#list_active li", state="detached", timeout=RUN_LIMIT * 1000)
 

@@ -15,6 +15,7 @@ from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse, Response
 from fastapi.staticfiles import StaticFiles
 from starlette.exceptions import HTTPException
+from starlette.middleware.gzip import GZipMiddleware
 
 from tms_config.config import Site
 from tms_reason.errors import TmsError
@@ -30,7 +31,8 @@ if TYPE_CHECKING:
     from tms_ur.audit import Audit
     from tms_ur.site_client import SiteClient
 
-STATIC = File(__file__).parent / "static"
+STATIC = File(__file__).parent / "static"  # pages that are not React yet
+BUILT = File(__file__).parent / "built"  # of console/, by `make setup`
 WORKERS = 8  # threads for calls that wait for a module
 
 log = structlog.stdlib.get_logger(__name__)
@@ -63,7 +65,8 @@ def create_app(client: "SiteClient", audit: "Audit", site: Site, access: Access)
         names=site.file.console.names,
     )
     _describe(app)
-    app.mount("/", StaticFiles(directory=STATIC, html=True), name="console")
+    files = StaticFiles(directory=BUILT, packages=[("tms_ur", STATIC.name)], html=True)
+    app.mount("/", GZipMiddleware(files), name="console")
     return app
 
 

@@ -4,7 +4,7 @@ import threading
 from collections.abc import Callable, Iterable
 
 from tms_config.clock import monotonic, utc_now
-from tms_ur.models import ActiveRun, Host, Machine, Place, Process, Question, Scheduler
+from tms_ur.models import ActiveRun, Host, LastStop, Machine, Place, Process, Question, Scheduler
 from tms_ur.place_models import SharedPlaces
 from tms_ur.reason_view import view
 from tms_ur.reasons import MachineSilent, MachineUnheard
@@ -26,6 +26,7 @@ class Board:
         self._runs: list[ActiveRun] = []
         self._questions: list[Question] = []
         self._places: dict[str, tuple[Place, float]] = {}
+        self._stops: dict[str, LastStop] = {}
         self._shared = SharedPlaces()
         self._watched: dict[str, Watched] = {}
         self._seen: list[SeenBy] = []
@@ -40,6 +41,8 @@ class Board:
         """Take a machine's state; `joint_age` is the age that the gateway measured."""
         with self._lock:
             before, _ = self._machines.get(machine.name, (None, None))
+            same = before is not None and before.since is not None and _told(before) == _told(machine)
+            machine = machine.model_copy(update={"since": before.since if before and same else utc_now()})
             self._machines[machine.name] = (machine, self._clock())
         if before is None or _content(before) != _content(machine):
             self._publish()
@@ -51,6 +54,12 @@ class Board:
             self._places[name] = (place, self._clock() - age)
         if before != place:
             self._publish()
+
+    def put_stop(self, name: str, stop: LastStop) -> None:
+        """Take the last stop of a machine."""
+        with self._lock:
+            self._stops[name] = stop
+        self._publish()
 
     def put_watched(self, name: str, watched: Watched) -> None:
         """Take what a gateway watches besides motion."""
@@ -70,6 +79,8 @@ class Board:
         """Take the scheduler's lists, which are complete."""
         asked = questions or []
         with self._lock:
+            before = {run.run_id: run for run in self._runs}
+            runs = [_waiting_since(run, before.get(run.run_id)) for run in runs]
             changed = runs != self._runs or asked != self._questions or self._runs_at is None
             self._runs, self._questions, self._runs_at = runs, asked, self._clock()
         if changed:
@@ -111,7 +122,7 @@ class Board:
             return State(
                 time=utc_now(),
                 machines=[
-                    _aged(machine, now, at, self._places.get(name)).model_copy(
+                    _aged(machine, now, at, self._places.get(name), self._stops.get(name)).model_copy(
                         update={"watched": self._watched.get(name, Watched())}
                     )
                     for name, (machine, at) in self._machines.items()
@@ -133,13 +144,28 @@ def _content(machine: Machine) -> Machine:
     return machine.model_copy(update={"joint_age": None})
 
 
-def _aged(machine: Machine, now: float, at: float | None, place: tuple[Place, float] | None) -> Machine:
+def _told(machine: Machine) -> tuple[object, ...]:
+    """What must change for a machine to be in another state; numbers in its reasons do not count."""
+    reasons = (machine.reason, machine.latch, machine.hold)
+    return machine.state, machine.by_hand, *(reason and reason.code for reason in reasons)
+
+
+def _waiting_since(run: ActiveRun, before: ActiveRun | None) -> ActiveRun:
+    if run.reason is None:
+        return run
+    same = before is not None and before.reason is not None and before.reason.code == run.reason.code
+    return run.model_copy(update={"reason_since": before.reason_since if before and same else utc_now()})
+
+
+def _aged(
+    machine: Machine, now: float, at: float | None, place: tuple[Place, float] | None, stop: LastStop | None
+) -> Machine:
+    update: dict[str, object] = {"last_stop": stop, **_placed(now, place)}
     if at is None:
-        why = MachineUnheard(f"{machine.name}:rc")
-        return machine.model_copy(update={"reason": view(why), **_placed(now, place)})
+        return machine.model_copy(update={**update, "reason": view(MachineUnheard(f"{machine.name}:rc"))})
     age = now - at
     joint_age = None if machine.joint_age is None else round(machine.joint_age + age, 1)
-    update: dict[str, object] = {"age": round(age, 1), "joint_age": joint_age, **_placed(now, place)}
+    update |= {"age": round(age, 1), "joint_age": joint_age}
     if age > MACHINE_SILENT:
         update |= {"state": "silent", "lamp": "fault", "reason": view(MachineSilent(f"{machine.name}:rc", round(age)))}
     return machine.model_copy(update=update)

@@ -47,6 +47,7 @@ def add(app: FastAPI, client: "SiteClient", audit: "Audit", site: Site) -> None:
     _stored(app, client, note)
     _places(app, client, note)
     _processes(app, client, note)
+    _interrupted(app, client, note)
 
 
 class _Note:
@@ -221,3 +222,17 @@ def _processes(app: FastAPI, client: "SiteClient", note: _Note) -> None:
         note(request, person, "restart", name)
         client.restart(name)
         return Nothing()
+
+
+def _interrupted(app: FastAPI, client: "SiteClient", note: _Note) -> None:
+    @app.post("/api/runs/{run_id}/resume", status_code=202, summary="Go on with an interrupted run; answers when it "
+              "has begun", responses=ANSWERS)  # fmt: skip
+    def resume(request: Request, run_id: RunId, _: Nothing, person: Operator) -> RunAsked:
+        note(request, person, "resume_run", run_id)
+        return RunAsked(run_id=client.start_run(0, True, run_id))
+
+    @app.post("/api/runs/{run_id}/abandon", summary="Give up an interrupted run for good", responses=ANSWERS)
+    def abandon(request: Request, run_id: RunId, _: Nothing, person: Operator) -> RunAsked:
+        note(request, person, "abandon_run", run_id)
+        client.abandon_run(run_id)
+        return RunAsked(run_id=run_id)

@@ -19,7 +19,7 @@ from tms_reason import wire
 from tms_reason.reason import Foreign
 from tms_reason.units import unit
 from tms_ur.data_models import Change, Record, SensingInput
-from tms_ur.models import ActiveRun, Event, Joint, Machine, Process, Question, Receipt, Run, Template
+from tms_ur.models import ActiveRun, Event, Joint, LastStop, Machine, Process, Question, Receipt, Run, Template
 from tms_ur.models import MachineState as Shown
 from tms_ur.place_models import PlaceRequest, PlaceState, SharedPlace, SharedPlaces
 from tms_ur.reason_view import ReasonView, of_line, view
@@ -100,6 +100,11 @@ def receipt(made: rc.StopReceipt) -> Receipt:
         travel_joint=made.travel_joint, travel_rad=round(made.travel_rad, 4), travel_m=round(made.travel_m, 3),
         cause=of_line(made.cause), detail=of_line(made.detail), evidence=of_line(made.evidence), latched=made.latched,
     )  # fmt: skip
+
+
+def last_stop(made: rc.StopReceipt) -> LastStop:
+    """For the console: what a card tells of the last stop of a machine."""
+    return LastStop(stamp=when(made.stamp), confirmed=made.confirmed)
 
 
 def process(row: host.Process) -> Process:

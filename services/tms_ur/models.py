@@ -32,6 +32,13 @@ class Place(Model):
     yaw: float = Field(description="rad")
 
 
+class LastStop(Model):
+    """The last stop of a machine."""
+
+    stamp: datetime | None = Field(description="when it was commanded")
+    confirmed: bool = Field(description="the machine was seen to stand still")
+
+
 class Machine(Model):
     """A machine as its gateway sees it."""
 
@@ -46,6 +53,10 @@ class Machine(Model):
     latch: ReasonView | None = Field(default=None, description="why it is stopped until it is re-armed; null: armed")
     hold: ReasonView | None = Field(default=None, description="why it is held until its run goes on")
     by_hand: str = Field(default="", description="who drives it by hand, empty if nobody does")
+    since: datetime | None = Field(
+        default=None, description="since when this console knows its state, latch, hold and reason as they are"
+    )
+    last_stop: LastStop | None = Field(default=None, description="null: none since its gateway began")
     lamp: Literal["automatic", "manual", "stopped", "fault"] = Field(default="fault", description="what its lamp shows")
     watched: Watched = Watched()
     place: Place | None = Field(default=None, description="null: never told")
@@ -63,6 +74,7 @@ class ActiveRun(Model):
     state: str = Field(description="preparing, running or stopping")
     machines: list[str] = Field(default=[])
     reason: ReasonView | None = Field(default=None, description="why it does not move on")
+    reason_since: datetime | None = Field(default=None, description="since when this console knows this reason")
     started_at: datetime | None = None
     leaf: str = Field(default="", description="path of the leaf that works or waits")
     nodes: str = Field(default="", description="a digit a node in the order of its tree: 0 idle, 1 running, 2 success, "
@@ -219,14 +231,6 @@ class SiteInfo(Model):
     name: str
     backend: str
     machines: list[SiteMachine]
-
-
-class Session(Model):
-    """Who you are to the console."""
-
-    name: str | None = Field(description="null: log in first")
-    role: Literal["viewer", "operator", "admin"] | None
-    login: bool = Field(description="whether this site has users")
 
 
 class Finding(Model):

@@ -39,8 +39,10 @@ from tms_ur.problems import Viewer, problems
 from tms_ur.reason_view import view
 from tms_ur.reasons import JournalCut, NoTree
 from tms_ur.scene_models import Scene
+from tms_ur.start_models import ResumePlan, TaskMachines
 from tms_ur.state_models import State
 from tms_ur.stream import Stream, StreamResponse
+from tms_ur.task_machines import machines_of
 from tms_ur.watch_models import EnabledAreas
 
 if TYPE_CHECKING:
@@ -65,7 +67,7 @@ def add(app: FastAPI, client: "SiteClient", audit: "Audit", site: Site) -> None:
     _stored(app, client)
     _audit(app, client, audit)
     _data(app, client)
-    _tasks(app, client)
+    _tasks(app, client, site)
     _scenes(app, client, site)
 
 
@@ -134,6 +136,10 @@ def _stored(app: FastAPI, client: "SiteClient") -> None:
         name = f'attachment; filename="{run_id}.{form}"'
         return Response(export.FORMS[form](run_id, found), 200, {"Content-Disposition": name}, export.TYPES[form])
 
+    @app.get("/api/runs/{run_id}/resume", summary="What resuming would do", responses=problems(404, 409, 503))
+    def resume_plan(run_id: RunId) -> ResumePlan:
+        return client.resume_plan(run_id)
+
     @app.get("/api/parameters", summary="Parameter records", responses=problems(503))
     def parameters(
         model_name: Annotated[str, Query(pattern=r"^[0-9A-Za-z_]{0,64}$", description="empty: of all machines")] = "",
@@ -165,7 +171,7 @@ def _data(app: FastAPI, client: "SiteClient") -> None:
         return client.sensing()
 
 
-def _tasks(app: FastAPI, client: "SiteClient") -> None:
+def _tasks(app: FastAPI, client: "SiteClient", site: Site) -> None:
     @app.get("/api/tasks", summary="Stored tasks", responses=problems(503))
     def tasks() -> list[Task]:
         return client.tasks()
@@ -173,6 +179,10 @@ def _tasks(app: FastAPI, client: "SiteClient") -> None:
     @app.get("/api/tasks/{task_id}", summary="One task with its tree", responses=problems(404, 503))
     def task(task_id: TaskId) -> TaskText:
         return client.task(task_id)
+
+    @app.get("/api/tasks/{task_id}/machines", summary="Which machines it moves", responses=problems(404, 409, 503))
+    def task_machines(task_id: TaskId) -> TaskMachines:
+        return TaskMachines(machines=machines_of(client.task(task_id).xml, client.template, site.file.machines))
 
     @app.get("/api/templates", summary="Stored templates, by name", responses=problems(503))
     def templates() -> list[Template]:

@@ -1,20 +1,29 @@
 """Endpoints for logging in and out."""
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from fastapi import FastAPI, Request, Response
+from pydantic import Field
 
 from tms_reason.errors import TmsError
 from tms_ur.access import Access, Person
+from tms_ur.base_model import Model
 from tms_ur.command_models import Login, Nothing
 from tms_ur.hashing import Hashing
-from tms_ur.models import Session
 from tms_ur.problems import problems
 from tms_ur.reasons import NoUsers
 from tms_ur.security import COOKIE, source
 
 if TYPE_CHECKING:
     from tms_ur.audit import Audit
+
+
+class Session(Model):
+    """Who you are to the console."""
+
+    name: str | None = Field(description="null: log in first")
+    role: Literal["viewer", "operator", "admin"] | None
+    login: bool = Field(description="whether this site has users")
 
 
 def add(app: FastAPI, access: Access, hashing: Hashing, audit: "Audit", secure: bool) -> None:

@@ -6,6 +6,7 @@ from tms_msg_db.srv import (
     AddTask,
     AddTemplate,
     GetTask,
+    GetTemplate,
     ListEvents,
     ListParameterHistory,
     ListParameters,
@@ -17,25 +18,21 @@ from tms_msg_db.srv import (
 )
 from tms_msg_host.msg import Processes
 from tms_msg_host.srv import ControlProcess, ReadLog
-from tms_msg_rc.msg import MachineState
+from tms_msg_rc.msg import MachineState, StopReceipt
 from tms_msg_rc.srv import Rearm, StopMachine
 from tms_msg_rp.srv import GetScene
 from tms_msg_sp.msg import InputState, InputStates
-from tms_msg_ts.action import ExecuteTask
 from tms_msg_ts.msg import RunStates
-from tms_msg_ts.srv import AnswerQuestion, CancelRun, CheckTask
+from tms_msg_ts.srv import CheckTask
 
 from tms_config.clock import monotonic
 from tms_config.config import Site
 from tms_decision.gateway.stops import RECEIPT_LIMIT
-from tms_interfaces.generated import Coded, Reply, Req, ServiceType
 from tms_machine.places import PERIOD, Places
 from tms_machine.values import to_parameters
 from tms_reason import wire
 from tms_reason.errors import RosError, TmsError
-from tms_reason.names import check_sent
-from tms_reason.reason import Foreign, Reason
-from tms_ros.client import Call
+from tms_reason.reason import Reason
 from tms_ros.node import Ros
 from tms_ur import messages
 from tms_ur.area_client import let_back
@@ -44,31 +41,29 @@ from tms_ur.data_models import Change, Record, Sensing
 from tms_ur.models import AddedTemplate, Event, Host, Place, Rearmed, Receipt, Run, Task, TaskText, Template
 from tms_ur.place_client import PlaceClient
 from tms_ur.reason_view import of_error, of_line, view
-from tms_ur.reasons import RunNotBegun, StartRefused, UnknownProcess
+from tms_ur.reasons import UnknownProcess
+from tms_ur.run_calls import CALL_LIMIT, RunCalls, checked
 from tms_ur.scene_models import Scene, scene
 from tms_ur.watch_models import EnabledAreas
 from tms_ur.watching import Watching
 
-SCHEDULER = "tms:ts"
-CALL_LIMIT = 4.0  # s for an answer of a module
-START_LIMIT = 30.0  # s for a run to begin; the scheduler may have to start its subtasks first
 PROCESS_LIMIT = 15.0  # s for a process to end and to be started
 
 
-class SiteClient:
+class SiteClient(RunCalls):
     """The site as the API sees it."""
 
     def __init__(self, ros: Ros, site: Site) -> None:
+        super().__init__(ros)
         names = list(site.file.machines)
-        self._ros = ros
         self.board = Board(names)
         self._watching = Watching(ros, site, self.board)
         self.shared = PlaceClient(ros, self.board)
         self._inputs: tuple[list[InputState], float] | None = None  # read and replaced in one step
-        self._scheduler = ros.peer(ExecuteTask, "/tms/execute_task")
         self._places = Places(ros, {name: site.border(name) for name in names})
         for name in names:
             ros.subscribe(MachineState, f"/{name}/rc/state", self._on_machine, latched=True)
+            ros.subscribe(StopReceipt, f"/{name}/rc/receipts", self._on_receipt, depth=20, latched=True)
             ros.prepare(StopMachine, f"/{name}/rc/stop")
         ros.subscribe(RunStates, "/tms/runs", self._on_runs, latched=True)
         ros.subscribe(Processes, "/tms/host/processes", self._on_processes, depth=10, latched=True)
@@ -79,6 +74,9 @@ class SiteClient:
 
     def _on_machine(self, message: MachineState) -> None:
         self.board.put_machine(messages.machine(message))
+
+    def _on_receipt(self, message: StopReceipt) -> None:
+        self.board.put_stop(message.machine, messages.last_stop(message))
 
     def _on_runs(self, message: RunStates) -> None:
         runs = [messages.active_run(run) for run in message.runs]
@@ -129,6 +127,10 @@ class SiteClient:
         """All stored templates."""
         return [messages.template(one) for one in self._ask(ListTemplates, "/tms/db/list_templates").templates]
 
+    def template(self, name: str) -> str:
+        """The tree of a template."""
+        return self._ask(GetTemplate, "/tms/db/get_template", template_name=name).stored.task_sequence
+
     def add_template(self, name: str, xml: str, description: str, replace: bool) -> AddedTemplate:
         """Store a template under its name."""
         answer = self._ask(
@@ -174,42 +176,6 @@ class SiteClient:
         """Errors and warnings of a tree; nothing is stored and nothing runs."""
         answer = self._ask(CheckTask, "/tms/check_task", xml=xml)
         return list(map(wire.known, answer.errors)), list(map(wire.known, answer.warnings))
-
-    def start_run(self, task_id: int, ignore_warnings: bool) -> str:
-        """Start a task and return the run's id once it has begun.
-
-        Raises:
-            TmsError: refused, with the scheduler's reason; or the scheduler is away. Nothing runs then.
-        """
-        self._scheduler.wait_ready(CALL_LIMIT)
-        call = self._scheduler.send(ExecuteTask.Goal(task_id=task_id, ignore_warnings=ignore_warnings))
-        call.wait_for(lambda: _begun(call) or call.outcome is not None, START_LIMIT)
-        if call.outcome is None and call.feedback is not None:  # it runs, or takes long to prepare
-            return str(call.feedback.run_id)
-        if call.outcome is None:  # the caller gets an error, so the run must not start later
-            self._scheduler.cancel(call)
-            raise RosError(RunNotBegun(START_LIMIT, SCHEDULER))
-        if call.result is None:
-            raise TmsError(StartRefused(SCHEDULER))
-        if call.result.outcome == "refused":
-            raise _error(call.result)
-        return str(call.result.run_id)  # it ended before its first feedback
-
-    def cancel_run(self, run_id: str) -> None:
-        """Cancel a run; its state shows when it has ended.
-
-        Raises:
-            TmsError: NO_RUN, or the scheduler is away.
-        """
-        self._ask(CancelRun, "/tms/cancel_run", run_id=run_id)
-
-    def answer(self, question: str, yes: bool, by: str) -> None:
-        """Answer a WaitForClick node.
-
-        Raises:
-            TmsError: NO_QUESTION, or the scheduler is away.
-        """
-        self._ask(AnswerQuestion, "/tms/answer", id=question, yes=yes, by=by)
 
     # machines
 
@@ -260,38 +226,16 @@ class SiteClient:
         """
         host = self._host_of(process)
         request = ControlProcess.Request(name=process, command="restart")
-        _checked(self._ros.call(ControlProcess, f"/tms/host/{host}/control", request, PROCESS_LIMIT))
+        checked(self._ros.call(ControlProcess, f"/tms/host/{host}/control", request, PROCESS_LIMIT))
 
     def log(self, process: str, size: int) -> str:
         """The end of a process's log."""
         request = ReadLog.Request(name=process, bytes=size)
         answer = self._ros.call(ReadLog, f"/tms/host/{self._host_of(process)}/log", request, CALL_LIMIT)
-        return _checked(answer).text
+        return checked(answer).text
 
     def _host_of(self, process: str) -> str:
         host = self.board.host_of(process)
         if host is None:
             raise TmsError(UnknownProcess(process))
         return host
-
-    def _ask(self, service_type: ServiceType[Req, Reply], name: str, **fields: Any) -> Reply:
-        request_type: Any = service_type.Request
-        request: Req = request_type(**fields)
-        check_sent(name, request)
-        return _checked(self._ros.call(service_type, name, request, CALL_LIMIT))
-
-
-def _checked(answer: Reply) -> Reply:
-    if answer.error_code:
-        raise _error(answer)
-    return answer
-
-
-def _error(answer: Coded) -> TmsError:
-    """The error in an answer."""
-    return TmsError(wire.of(answer.error_msg) or Foreign(answer.error_code), answer.error_code)
-
-
-def _begun(call: Call[ExecuteTask.Result, ExecuteTask.Feedback]) -> bool:
-    """Whether the run has begun; before that it only prepares and may be refused."""
-    return call.feedback is not None and call.feedback.state != "preparing"

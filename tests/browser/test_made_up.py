@@ -1,84 +1,32 @@
 """What the pages make of states that a test makes up: silence, old places, long journals; no ROS, no mesh."""
 
 import re
-import socket
-import threading
 from collections.abc import Iterator
 from datetime import timedelta
 from pathlib import Path
 from typing import Any
 
 import pytest
-import yaml
 from playwright.sync_api import Page, expect
 
-from conftest import site_data
 from tms_config.clock import utc_now
-from tms_config.config import load_site
 from tms_decision.reasons import SoftwareStop
 from tms_reason.errors import TmsError
-from tms_reason.reason import Foreign, Reason
+from tms_reason.reason import Reason
 from tms_reason.remedies import REARM, RESUME
-from tms_ur.access import Access
-from tms_ur.api import create_app
-from tms_ur.board import Board
-from tms_ur.connections import Listener
-from tms_ur.data_models import Record
-from tms_ur.models import ActiveRun, AddedTemplate, Event, Host, Machine, Place, Process, Question, Rearmed, Run
-from tms_ur.node import Server
+from tms_ur.models import Event, Host, Place, Process, Question
 from tms_ur.reason_view import view
-from unit.tms_ur.fakes import NOON, FakeAudit, FakeSiteClient
+from unit.tms_ur.fakes import NOON
+from yard import RUN, Yard, serving
 
 pytestmark = pytest.mark.browser
-MACHINES = ("zx200", "ic120")
 SHAPE = {"paths": ["0"], "names": ["all"], "types": ["Sequence"], "kinds": ["control"], "ports": [""]}
 WITH_TEMPLATE = {  # a task that calls the template Dig in its second node
     "paths": ["0", "0.0", "0.1"], "names": ["all", "own", "called"],
     "types": ["Sequence", "AlwaysSuccess", "AlwaysSuccess"],
     "kinds": ["control", "action", "action"], "ports": ["", "", ""], "templates": ["", "", "Dig:3"],
 }  # fmt: skip
-RUN = ActiveRun(run_id="r-1", task_id=4, state="running", machines=["zx200"])
 LONG = 20_000  # events, as many as a browser replays
-
-
-class Yard(FakeSiteClient):
-    """Two machines, and a clock that the test turns."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.now = 100.0
-        self.board = Board(MACHINES, lambda: self.now)
-        self.slow = threading.Event()  # until then zx200 does not answer
-        self.journals: dict[str, list[Event]] = {}
-        self.taken = False  # whether the template has another text
-
-    def receive(self, **facts: Any) -> None:
-        """Both machines and the scheduler."""
-        for name in MACHINES:
-            self.board.put_machine(Machine(name=name, state="standing", joint_age=0.1, **facts))
-        self.board.put_runs([RUN])
-
-    def rearm(self, machine: str, token: str) -> Rearmed:
-        if machine == "zx200":
-            self.slow.wait(60)
-        return super().rearm(machine, token)
-
-    def add_template(self, name: str, xml: str, description: str, replace: bool) -> AddedTemplate:
-        if self.taken and not replace:
-            raise TmsError(Foreign("it has another text"), "TEMPLATE_EXISTS")
-        return super().add_template(name, xml, description, replace)
-
-    def runs(self, limit: int) -> list[Run]:
-        facts = {"task_id": 4, "description": "", "machines": [], "started_at": NOON, "ended_at": NOON}
-        return [Run(run_id=name, state="abandoned", **facts, values={"nodes": 3}) for name in self.journals]
-
-    def events(self, run_id: str, after: int, limit: int) -> list[Event]:
-        return self.journals[run_id][after : after + limit] if self.journals else super().events(run_id, after, limit)
-
-    def parameters(self, model_name: str) -> list[Record]:
-        written = utc_now() - timedelta(seconds=30)
-        facts = {"type": "static", "description": "", "source": "cli", "updated_at": written, "values": {"d": 1.0}}
-        return [Record(model_name="zx200", record_name="pose", **facts)]
 
 
 class PageLatch(Reason, text="{machine} is made to wait", action=REARM, details="seen on {topic}"):
@@ -100,15 +48,8 @@ def yard() -> Yard:
 @pytest.fixture
 def address(yard: Yard, tmp_path: Path) -> Iterator[str]:
     """Where the console of the yard is."""
-    file = tmp_path / "site.yaml"
-    file.write_text(yaml.safe_dump(site_data(42, 20000, machines={name: {"model": name} for name in MACHINES})))
-    listener = Listener(fileno=socket.create_server(("127.0.0.1", 0)).detach())
-    application = create_app(yard, FakeAudit(), load_site(str(file)), Access(None))  # type: ignore[arg-type]
-    server = Server(application, listener, None)
-    yield f"http://127.0.0.1:{listener.getsockname()[1]}"
-    yard.slow.set()
-    yard.board.close()
-    server.stop()
+    with serving(yard, tmp_path) as address:
+        yield address
 
 
 def event(number: int, kind: str = "node", **values: Any) -> Event:
@@ -117,7 +58,7 @@ def event(number: int, kind: str = "node", **values: Any) -> Event:
 
 def test_one_yes_arms_one_machine(page: Page, address: str, yard: Yard) -> None:
     yard.receive(latch=view(SoftwareStop()))
-    page.goto(f"{address}/#run")
+    page.goto(f"{address}/#board")
     late = page.get_by_role("button", name="Re-arm zx200")
     late.click()
     page.get_by_role("button", name="Re-arm ic120").click()
@@ -135,7 +76,7 @@ def test_a_reason_has_what_helps_and_its_details(page: Page, address: str, yard:
     yard.slow.set()
     latched = PageLatch("zx200", "/zx200/rc/state")
     yard.board.put_runs([RUN.model_copy(update={"reason": view(latched)})])
-    page.goto(f"{address}/#run")
+    page.goto(f"{address}/#board")
     row = page.locator("#list_active [data-part=reason]")
     expect(row).to_contain_text("zx200 is made to wait")
     expect(row.locator("details span")).to_be_hidden()
@@ -150,7 +91,10 @@ def test_a_reason_has_what_helps_and_its_details(page: Page, address: str, yard:
     expect(row.get_by_role("button", name="機械を確認してから")).to_be_visible()
     yard.error = TmsError(PageInterruption("r-1"))
     page.locator("#list_tasks button").first.click()
-    expect(page.locator("#message code")).to_have_text("tms resume r-1")
+    expect(page.locator("#message button")).to_be_visible()
+    yard.error = None
+    page.locator("#message button").click()
+    expect(page.locator("#dialog_text")).to_contain_text("タスク 4 を再開しますか")
 
 
 def test_a_silent_scheduler_is_told_on_panel_and_tree(page: Page, address: str, yard: Yard) -> None:
@@ -230,19 +174,35 @@ def test_a_refused_run_shows_no_tree(page: Page, address: str, yard: Yard) -> No
     expect(page.locator("#past [data-path]")).to_be_visible()
 
 
-@pytest.mark.parametrize(("where", "box"), [("#tree", "#tree_box"), ("#history/r-1", "#past")])
-def test_nodes_of_a_template_are_marked(page: Page, address: str, yard: Yard, where: str, box: str) -> None:
-    """In the live tree and in that of a past run, whose journal names the template, too."""
+def journal_of_template(yard: Yard) -> None:
     change = Event(number=2, stamp=NOON, kind="node", node="0.1", text="called IDLE -> SUCCESS")
     yard.journals = {"r-1": [event(1, "tree", **WITH_TEMPLATE), change]}
-    page.goto(f"{address}/{where}")
-    marked = page.locator(f"{box} [data-path]").filter(has=page.locator("rect.template"))
-    expect(page.locator(f"{box} [data-path]")).to_have_count(3)
+
+
+def test_nodes_of_a_template_are_marked_in_the_live_tree(page: Page, address: str, yard: Yard) -> None:
+    journal_of_template(yard)
+    page.goto(f"{address}/#tree")
+    nodes = page.locator("#tree_box [data-path]")
+    marked = nodes.filter(has=page.locator(".from_template"))
+    expect(nodes).to_have_count(3)
+    expect(marked).to_have_attribute("data-path", "0.1")
+    expect(marked).to_have_attribute("title", re.compile(r"\(template Dig:3\)"))
+    marked.click()
+    expect(page.locator("#node_details")).to_contain_text("template Dig:3")
+    page.locator("#language").click()
+    expect(marked).to_have_attribute("title", re.compile(r"\(テンプレート Dig:3\)"))
+
+
+def test_nodes_of_a_template_are_marked_in_the_history(page: Page, address: str, yard: Yard) -> None:
+    """Whose journal names the template, too."""
+    journal_of_template(yard)
+    page.goto(f"{address}/#history/r-1")
+    marked = page.locator("#past [data-path]").filter(has=page.locator("rect.template"))
+    expect(page.locator("#past [data-path]")).to_have_count(3)
     expect(marked).to_have_count(1)
     expect(marked).to_have_attribute("data-path", "0.1")
     expect(marked.locator("title")).to_contain_text("(template Dig:3)")
-    if box == "#past":
-        expect(page.locator("#list_events tr").first.locator("[data-part=node]")).to_have_text("0.1 (template Dig:3)")
+    expect(page.locator("#list_events tr").first.locator("[data-part=node]")).to_have_text("0.1 (template Dig:3)")
     page.locator("#language").click()
     expect(marked.locator("title")).to_contain_text("(テンプレート Dig:3)")
 

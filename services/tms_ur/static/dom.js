@@ -63,9 +63,11 @@ export function setText(element, text) {
 
 export const mark = (state) => MARKS[state] ?? "!";
 
+export const tone = (state) => (GOOD.has(state) ? "good" : CALM.has(state) ? "calm" : "bad");
+
 export function setBadge(element, state) {
   setText(element, `${mark(state)} ${t(state)}`);
-  element.className = `badge ${GOOD.has(state) ? "good" : CALM.has(state) ? "calm" : "bad"}`;
+  element.className = `badge ${tone(state)}`;
 }
 
 export function part(element, name) {
@@ -123,16 +125,12 @@ export function say(text, bad = false) {
   setText(at("message"), text);
 }
 
-/** Asks for confirmation of a step that cannot be undone; resolves to true or false. */
-export function confirmed(text) {
-  const dialog = at("dialog");
-  if (dialog.open) {
-    return Promise.resolve(false); // one answer must not count for two questions
-  }
-  setText(at("dialog_text"), text);
-  dialog.returnValue = "no";
-  dialog.showModal();
-  return new Promise((resolve) => {
-    dialog.addEventListener("close", () => resolve(dialog.returnValue === "yes"), { once: true });
-  });
+let question = null; // shows a text and resolves to whether it was confirmed
+
+/** Gives pages the frame's dialog. */
+export function confirmWith(ask) {
+  question = ask;
 }
+
+/** Asks for confirmation of a step that cannot be undone; resolves to true or false. */
+export const confirmed = (text) => question(text);

@@ -1,5 +1,5 @@
 // A behaviour tree as Groot draws it: top down, grey, orange, green, red; each state has a mark, too.
-import { change, draw, setText } from "./dom.js";
+import { button, change, draw, make, setText } from "./dom.js";
 import { t } from "./strings.js";
 
 const WIDTH = 176;
@@ -178,4 +178,10 @@ export class TreeView {
       this.rescale();
     }
   }
+}
+
+/** Buttons for a view. */
+export function zoomBar(find) {
+  return make("div", { className: "bar" }, button("zoom_in", "", () => find().step(1)), button("zoom_out", "", () => find().step(-1)),
+    button("fit", "", () => find().fit()), button("expand", "", () => find().openAll()));
 }

@@ -23,12 +23,13 @@ def make(*argv: str) -> str:
 @pytest.fixture
 def built(tmp_path: Path) -> str:
     """An environment that was set up after `make interfaces NAV2_DISTRO=humble`."""
-    venv, store = tmp_path / "venv", tmp_path / "venv-store"
+    venv = tmp_path / "venv"
     for file in ("bin/uv", ".requirements", ".interfaces-humble", ".ready"):
         (venv / file).parent.mkdir(parents=True, exist_ok=True)
         (venv / file).touch()
-    store.mkdir()
-    (store / ".ready").touch()
+    for other in (tmp_path / "venv-store", tmp_path / "venv-console"):
+        other.mkdir()
+        (other / ".ready").touch()
     return f"VENV={venv}"
 
 
@@ -54,7 +55,8 @@ def test_without_any_they_are_those_of_jazzy(tmp_path: Path) -> None:
 def test_clean_leaves_the_state_of_other_sites(tmp_path: Path, argv: tuple[str, ...], state: str) -> None:
     """Latches and the numbers of runs are there."""
     (removal,) = [line for line in make("clean", f"VENV={tmp_path}", *argv).splitlines() if line.startswith("rm ")]
-    assert removal == f"rm -rf {tmp_path} {tmp_path}-store .state/{state}"
+    made = f"{tmp_path} {tmp_path}-store {tmp_path}-console node_modules services/tms_ur/built/"
+    assert removal == f"rm -rf {made} .state/{state}"
 
 
 @pytest.mark.parametrize("role", ROLES)

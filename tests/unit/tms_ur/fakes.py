@@ -29,6 +29,7 @@ from tms_ur.data_models import Change, Record, Sensing, SensingInput
 from tms_ur.models import AddedTemplate, Event, Rearmed, Receipt, Run, Task, TaskText, Template
 from tms_ur.reason_view import of_line, view
 from tms_ur.scene_models import Scene, scene
+from tms_ur.start_models import ResumePlan
 from tms_ur.watch_models import EnabledAreas
 
 NOON = datetime(2026, 1, 31, 12, tzinfo=timezone.utc)
@@ -70,6 +71,10 @@ class FakeSiteClient:
     def task(self, task_id: int) -> TaskText:
         self._called("task", task_id)
         return TaskText(id=task_id, model_name="zx200", description="掘削", added_at=NOON, xml=XML)
+
+    def template(self, name: str) -> str:
+        self._called("template", name)
+        return XML
 
     def templates(self) -> list[Template]:
         self._called("templates")
@@ -168,9 +173,16 @@ class FakeSiteClient:
         self._called("log", process, size)
         return "event=started\n"
 
-    def start_run(self, task_id: int, ignore_warnings: bool) -> str:
-        self._called("start_run", task_id, ignore_warnings)
-        return "r-2"
+    def start_run(self, task_id: int, ignore_warnings: bool, resume: str = "") -> str:
+        self._called("start_run", task_id, ignore_warnings, *([resume] if resume else []))
+        return resume or "r-2"
+
+    def resume_plan(self, run_id: str) -> ResumePlan:
+        self._called("resume_plan", run_id)
+        return ResumePlan(task_id=4, done=["dig"], next=["swing"])
+
+    def abandon_run(self, run_id: str) -> None:
+        self._called("abandon_run", run_id)
 
     def cancel_run(self, run_id: str) -> None:
         self._called("cancel_run", run_id)

@@ -19,6 +19,7 @@ from tms_ur import messages
 from tms_ur.models import ActiveRun, Event, Host, Joint, Machine, Process
 from tms_ur.reason_view import view
 from tms_ur.security import SECURITY, is_loopback
+from unit.tms_ur import fakes
 from unit.tms_ur.fakes import HERE, XML, Client, FakeAudit, FakeSiteClient, WrongLine, app
 
 READS = [
@@ -27,7 +28,8 @@ READS = [
 ]  # fmt: skip
 RECORD = {"model_name": "zx200", "record_name": "pose", "fields": [{"name": "a", "type": "double", "value": 3}]}
 COMMANDS = [
-    ("/api/runs", {"task_id": 4}), ("/api/runs/r-1/cancel", {}), ("/api/questions/q-1", {"yes": True}),
+    ("/api/runs", {"task_id": 4}), ("/api/runs/r-1/cancel", {}), ("/api/runs/r-1/resume", {}),
+    ("/api/runs/r-1/abandon", {}), ("/api/questions/q-1", {"yes": True}),
     ("/api/machines/zx200/rearm", {}), ("/api/tasks", {"xml": XML}), ("/api/tasks/4/remove", {}),
     ("/api/tasks/check", {"xml": XML}), ("/api/tasks/4/diff", {"xml": XML}), ("/api/parameters", RECORD),
     ("/api/processes/zx200:rc/restart", {}), ("/api/templates", {"name": "Dig", "xml": XML}),
@@ -311,7 +313,7 @@ def test_every_command_is_audited(site_client: FakeSiteClient) -> None:
         assert client.post(path, json=body).is_success, path
     assert {what for _, _, what, _ in audit.notes} == {
         "start_run", "cancel_run", "answer", "rearm_asked", "escape_asked", "add_task", "remove_task", "set_parameter",
-        "restart", "stop", "add_template", "revoke_place_asked",
+        "restart", "stop", "add_template", "revoke_place_asked", "resume_run", "abandon_run",
     }  # fmt: skip
     assert {(who, where) for who, where, _, _ in audit.notes} == {("local", "127.0.0.1")}
 
@@ -389,6 +391,18 @@ def test_the_site_is_described(client: Client) -> None:
     assert all(len(box["min"]) == len(box["max"]) == 3 for box in machine["footprint"])
 
 
+def test_resume_or_abandon_an_interrupted_run(client: Client, site_client: FakeSiteClient) -> None:
+    assert client.get("/api/runs/r-1/resume").json() == {"task_id": 4, "done": ["dig"], "next": ["swing"]}
+    assert client.post("/api/runs/r-1/resume", json={}).json() == {"run_id": "r-1"}
+    assert client.post("/api/runs/r-1/abandon", json={}).json() == {"run_id": "r-1"}
+    assert site_client.calls == [("resume_plan", "r-1"), ("start_run", 0, True, "r-1"), ("abandon_run", "r-1")]
+
+
+def test_which_machines_a_task_moves(site_client: FakeSiteClient, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(fakes, "XML", "<root><A model_name='zx200'/></root>")
+    assert Client(app(site_client)).get("/api/tasks/4/machines").json() == {"machines": ["zx200"]}
+
+
 def test_cancel_a_run(client: Client, site_client: FakeSiteClient) -> None:
     answer = client.post("/api/runs/r-1/cancel", json={})
     assert (answer.status_code, answer.json()) == (202, {"run_id": "r-1"})
@@ -454,7 +468,7 @@ def test_a_bug_is_told_without_its_insides(site_client: FakeSiteClient) -> None:
 # what stands before
 
 
-@pytest.mark.parametrize("path", ["/", "/console.js", "/api/state", "/api/nothing", "/api/tasks/x", "/openapi.json"])
+@pytest.mark.parametrize("path", ["/", "/dom.js", "/api/state", "/api/nothing", "/api/tasks/x", "/openapi.json"])
 def test_security_headers_are_everywhere(client: Client, path: str) -> None:
     headers = client.get(path).headers
     assert {name: headers[name] for name in SECURITY} == SECURITY
@@ -578,7 +592,8 @@ def test_every_endpoint_is_in_the_document(client: Client) -> None:
     document = client.get("/openapi.json").json()
     assert set(document["paths"]) == {
         "/api/state", "/api/events", "/api/tasks", "/api/tasks/{task_id}", "/api/runs", "/api/runs/{run_id}/events",
-        "/api/runs/{run_id}/cancel", "/api/parameters",
+        "/api/runs/{run_id}/cancel", "/api/runs/{run_id}/resume", "/api/runs/{run_id}/abandon", "/api/parameters",
+        "/api/tasks/{task_id}/machines",
         "/api/parameters/history", "/api/sensing", "/api/site", "/api/session", "/api/login", "/api/logout",
         "/api/stop", "/api/machines/{name}/rearm", "/api/machines/{name}/escape",
         "/api/questions/{question_id}", "/api/tasks/check",

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 
 from tms_ur.board import Board
-from tms_ur.models import ActiveRun, Host, Joint, Machine, Place, Process
+from tms_ur.models import ActiveRun, Host, Joint, LastStop, Machine, Place, Process
 from tms_ur.reason_view import view
 from tms_ur.reasons import MachineSilent
 
@@ -106,3 +106,35 @@ def test_a_place_has_an_age_of_its_own() -> None:
     watched.board.put_place("zx200", place)
     assert (watched.changes, watched.board.snapshot().machines[0].place_age) == (changes, 0.0)
     assert watched.board.snapshot().machines[1].place_age is None
+
+
+def test_a_machine_tells_since_when_it_is_as_it_is() -> None:
+    watched = Watched()
+    reasons = [view(MachineSilent("zx200:rc", age)) for age in (1, 2)]
+    seen = []
+    for state, reason in (("standing", None), ("moving", None), ("not_ready", reasons[0]), ("not_ready", reasons[1])):
+        watched.board.put_machine(machine(1.0).model_copy(update={"state": state, "reason": reason}))
+        seen.append(watched.board.snapshot().machines[0].since)
+    assert None not in seen
+    assert seen[0] < seen[1] < seen[2] == seen[3]  # type: ignore[operator]  # a number in a reason is no other state
+
+
+def test_a_run_tells_since_when_it_waits() -> None:
+    watched = Watched()
+    run = ActiveRun(run_id="r", task_id=1, state="running")
+    seen = []
+    for age in (None, 1, 2):
+        reason = None if age is None else view(MachineSilent("zx200:rc", age))
+        watched.board.put_runs([run.model_copy(update={"reason": reason})])
+        seen.append(watched.board.snapshot().runs[0].reason_since)
+    assert seen[0] is None
+    assert seen[1] == seen[2] is not None
+
+
+def test_the_last_stop_of_a_machine_stays() -> None:
+    watched = Watched()
+    stop = LastStop(stamp=None, confirmed=True)
+    watched.board.put_stop("zx200", stop)
+    assert watched.changes == 1
+    watched.board.put_machine(machine(1.0))
+    assert [one.last_stop for one in watched.board.snapshot().machines] == [stop, None]

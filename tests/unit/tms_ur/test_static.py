@@ -6,16 +6,20 @@ from pathlib import Path
 
 import pytest
 
+import console_types
+from conftest import PROJECT
 from tms_reason import remedies
 from tms_reason.texts import translated
 from tms_ts.run_states import STATES
-from tms_ur.api import STATIC
+from tms_ur.api import BUILT, STATIC
 from unit.tms_ur.fakes import Client, FakeSiteClient, app
 
 FILES = sorted(path for path in STATIC.rglob("*") if path.is_file())
 CODE = {path: path.read_text(encoding="utf-8") for path in FILES if path.suffix == ".js"}
+SOURCE = PROJECT / "services" / "tms_ur" / "console" / "src"
+REACT = {path: path.read_text(encoding="utf-8") for path in SOURCE.rglob("*.ts*") if path.name != "api.ts"}
+REACT_PAGES = {"board", "tree"}
 PAGES = {path: path.read_text(encoding="utf-8") for path in FILES if path.suffix == ".html"}
-FIRST_PAGE = 300_000  # bytes
 
 
 def table() -> dict[str, dict[str, str]]:
@@ -40,6 +44,8 @@ def used() -> set[str]:
     found: set[str] = set()
     for text in PAGES.values():
         found |= set(re.findall(r'data-(?:t|label)="(\w+)"', text))
+    for text in REACT.values():
+        found |= {key for args in re.findall(r"\bt\(([^()]*)", text) for key in re.findall(r'"(\w+)"', args)}
     for text in CODE.values():
         found |= set(re.findall(r'\bt\("(\w+)"', text)) | set(re.findall(r'\b(?:t|label): "(\w+)"', text))
         found |= set(re.findall(r'\bheading\("(\w+)"', text)) | set(re.findall(r'\bbutton\("(\w+)"', text))
@@ -69,13 +75,13 @@ def test_a_run_has_the_states_and_words_of_the_command_line() -> None:
 
 def test_every_page_has_a_title_and_every_title_a_page() -> None:
     pages = {path.stem: text for path, text in CODE.items() if path.parent.name == "pages"}
-    assert {key.removeprefix("p_") for key in table()["en"] if key.startswith("p_")} == pages.keys()
+    assert {key.removeprefix("p_") for key in table()["en"] if key.startswith("p_")} == pages.keys() | REACT_PAGES
     for name, text in pages.items():
         assert {"build", "update"} <= set(re.findall(r"^export function (\w+)", text, re.MULTILINE)), name
 
 
 def test_every_element_that_the_code_asks_for_is_made_somewhere() -> None:
-    everything = "".join([*PAGES.values(), *CODE.values()])
+    everything = "".join([*PAGES.values(), *CODE.values(), *REACT.values()])
     made = set(re.findall(r'\bid(?:="|: "| = ")(\w+)"', everything)) | set(re.findall(r'\btable\("(\w+)"', everything))
     asked = set(re.findall(r'\bat\("(\w+)"\)', "".join(CODE.values())))
     assert asked <= made
@@ -107,10 +113,27 @@ def test_nothing_comes_from_elsewhere(file: Path) -> None:
     assert not re.search(r"https?://|innerHTML|\bstyle=|<script(?![^>]*src)|\son\w+=", text)
 
 
-def test_files_are_served_and_small() -> None:
+def test_files_are_served() -> None:
     client = Client(app(FakeSiteClient()))
-    assert client.get("/").text == (STATIC / "index.html").read_text(encoding="utf-8")
-    assert client.get("/console.js").headers["content-type"].startswith("text/javascript")
-    assert client.get("/pages/run.js").status_code == client.get("/panel.html").status_code == 200
+    assert client.get("/").text == (BUILT / "index.html").read_text(encoding="utf-8")
+    assert client.get("/dom.js").headers["content-type"].startswith("text/javascript")
+    assert client.get("/pages/history.js").status_code == client.get("/panel.html").status_code == 200
     assert client.get("/../api.py").status_code == client.get("/%2e%2e/api.py").status_code == 404
-    assert sum(path.stat().st_size for path in FILES) < FIRST_PAGE
+
+
+def test_the_built_page_runs_no_inline_script_and_asks_nobody_else() -> None:
+    for file in (path for path in BUILT.rglob("*") if path.suffix in (".html", ".css")):
+        text = file.read_text(encoding="utf-8")
+        assert not re.search(r"https?://|\bstyle=|<style|<script(?![^>]*src)|\son\w+=|data:", text), file
+
+
+def test_files_are_sent_compressed() -> None:
+    client = Client(app(FakeSiteClient()))
+    file = max(BUILT.glob("assets/index-*.js"), key=lambda path: path.stat().st_size)
+    answer = client.get(f"/assets/{file.name}", headers={"Accept-Encoding": "gzip"})
+    assert answer.headers["content-encoding"] == "gzip" and answer.content == file.read_bytes()
+
+
+def test_types_of_the_api_are_up_to_date() -> None:
+    """`make console-types` writes them anew."""
+    assert console_types.FILE.read_text(encoding="utf-8") == console_types.types()

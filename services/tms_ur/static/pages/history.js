@@ -3,8 +3,7 @@ import { at, button, duration, heading, keep, make, part, parts, setBadge, setTe
 import { fillReason, showError } from "../reasons.js";
 import { ask } from "../server.js";
 import { clock, fieldName, said, t, when } from "../strings.js";
-import { TreeView, templateOf } from "../treeview.js";
-import { zoomBar } from "./tree.js";
+import { TreeView, templateOf, zoomBar } from "../treeview.js";
 
 const PAGE = 1000;
 const MAX_EVENTS = 20000; // events that a browser replays

@@ -1,9 +1,9 @@
 // Tasks: a file from Groot is checked, compared and stored here.
 import { at, button, confirmed, heading, keep, make, part, parts, say, setText, table } from "../dom.js";
+import { showFindings } from "../findings.js";
 import { once, showError } from "../reasons.js";
 import { ask } from "../server.js";
 import { t, when } from "../strings.js";
-import { showFindings } from "./run.js";
 
 const MAX_BYTES = 5_000_000; // same limit as in the server
 const MAX_LINES = 2000; // lines that are shown

@@ -1,0 +1,39 @@
+// A button that gives a command once: it is disabled until the answer comes.
+
+import { say } from "old/dom.js";
+import { sayError } from "old/reasons.js";
+import { type ReactNode, useRef, useState } from "react";
+
+interface Props {
+  work: () => Promise<string>; // resolves to the text to show
+  children: ReactNode;
+  className?: string;
+  label?: string; // spoken name, where it tells more than the text
+}
+
+export function Command({ work, children, className, label }: Props) {
+  const [busy, setBusy] = useState(false);
+  const element = useRef<HTMLButtonElement>(null);
+  const give = async () => {
+    setBusy(true);
+    say("");
+    try {
+      const text = await work();
+      if (text !== "") {
+        say(text);
+      }
+    } catch (error) {
+      sayError(error);
+    } finally {
+      setBusy(false);
+      if (document.activeElement === document.body) {
+        requestAnimationFrame(() => element.current?.focus()); // the disabled button has lost the focus
+      }
+    }
+  };
+  return (
+    <button type="button" ref={element} className={className} disabled={busy} aria-label={label} onClick={give}>
+      {children}
+    </button>
+  );
+}

@@ -1,0 +1,19 @@
+// Names for what the API sends, by the models of its document.
+import type { components } from "./api";
+
+type Models = components["schemas"];
+export type ActiveRun = Models["ActiveRun"];
+export type Checked = Models["Checked"];
+export type Finding = Models["Finding"];
+export type Joint = Models["Joint"];
+export type Machine = Models["Machine"];
+export type Question = Models["Question"];
+export type ReasonView = Models["ReasonView"];
+export type ResumePlan = Models["ResumePlan"];
+export type Run = Models["Run"];
+export type Session = Models["Session"];
+export type SharedPlace = Models["SharedPlace"];
+export type SharedPlaces = Models["SharedPlaces"];
+export type State = Models["State"];
+export type Task = Models["Task"];
+export type Tree = Models["Tree"];

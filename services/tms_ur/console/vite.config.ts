@@ -1,0 +1,27 @@
+/// <reference types="vitest/config" />
+import react from "@vitejs/plugin-react";
+import { defineConfig, type Plugin } from "vite";
+
+/** Pages that are not React yet, and what these share with the frame, are served as they are: ../static/x.js as /x.js. */
+function old(served: boolean): Plugin {
+  const file = (name: string) => new URL(`../static/${name}`, import.meta.url).pathname;
+  return {
+    name: "old",
+    enforce: "pre",
+    resolveId(id) {
+      const name = /^old\/(.*)/.exec(id)?.[1];
+      return name && (served ? { id: `/${name}`, external: "absolute" } : file(name));
+    },
+  };
+}
+
+export default defineConfig(({ command }) => ({
+  plugins: [react(), old(command === "build")],
+  build: {
+    outDir: "../built",
+    emptyOutDir: true,
+    assetsInlineLimit: 0, // the policy of the site lets no data: address in
+    modulePreload: { polyfill: false },
+  },
+  test: { environment: "jsdom", cache: false, fsModuleCache: false, testTimeout: 120_000 }, // nothing is written beside the sources,
+}));

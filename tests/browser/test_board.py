@@ -1,0 +1,136 @@
+"""The board: one light for the site, what needs a person, starts that ask once; in both languages, and on a phone."""
+
+from collections.abc import Iterator
+from datetime import datetime, timezone
+from pathlib import Path
+
+import pytest
+from axe_playwright_python.sync_playwright import Axe
+from playwright.sync_api import Page, expect
+
+from tms_decision.reasons import SoftwareStop
+from tms_ur.models import Host, LastStop, Machine, Process, Run
+from tms_ur.place_models import PlaceRequest, SharedPlace, SharedPlaces
+from tms_ur.reason_view import of_line, view
+from unit.tms_ur.fakes import NOON
+from yard import Yard, serving
+
+pytestmark = pytest.mark.browser
+XML = "<root><Sequence><L model_name='ic120'/><L model_name='zx200'/></Sequence></root>"
+
+
+class Waiting(Yard):
+    """One run was interrupted, and the task moves both machines."""
+
+    def task(self, task_id: int) -> object:  # type: ignore[override]
+        return super().task(task_id).model_copy(update={"xml": XML})
+
+    def runs(self, limit: int) -> list[Run]:
+        facts = {"run_id": "r-9", "task_id": 4, "description": "", "machines": ["zx200"], "started_at": NOON}
+        open_ = not any(call[0] in ("start_run", "abandon_run") for call in self.calls)
+        return [Run(**facts, state="interrupted", reason=of_line("lost"), ended_at=NOON)] if open_ else []
+
+
+@pytest.fixture
+def yard() -> Waiting:
+    yard = Waiting()
+    yard.receive()
+    yard.board.put_runs([])
+    return yard
+
+
+@pytest.fixture
+def address(yard: Waiting, tmp_path: Path) -> Iterator[str]:
+    with serving(yard, tmp_path) as address:
+        yield address
+
+
+def test_a_start_names_the_machines_and_asks_once(page: Page, address: str, yard: Waiting) -> None:
+    page.goto(f"{address}/#board")
+    run = page.get_by_role("button", name="Run task 4")
+    run.click()
+    expect(page.locator("#will_move li")).to_have_text(["ic120", "zx200"])
+    page.get_by_role("button", name="Back").click()
+    run.click()
+    assert not any(call[0] == "start_run" for call in yard.calls)
+    page.get_by_role("button", name="Do it").click()
+    expect(page.locator("#message")).to_have_text("Run r-2 has begun.")
+    assert [call for call in yard.calls if call[0] == "start_run"] == [("start_run", 4, False)]
+
+
+@pytest.mark.parametrize(("word", "call"), [("Resume", "start_run"), ("Give up", "abandon_run")])
+def test_an_interrupted_run_is_closed_by_a_person(
+    page: Page, address: str, yard: Waiting, word: str, call: str
+) -> None:
+    page.goto(f"{address}/#board")
+    expect(page.locator("#light")).to_contain_text("Needs a look")
+    rows = page.locator("#list_interrupted li")
+    expect(rows).to_contain_text("Interrupted")
+    page.get_by_role("button", name=f"{word} run r-9").click()
+    expect(page.locator("#dialog_text")).to_contain_text(word)
+    page.get_by_role("button", name="Do it").click()
+    expect(rows).to_have_count(0)
+    expect(page.locator("#light")).to_contain_text("All armed")
+    assert [one[-1] for one in yard.calls if one[0] == call] == ["r-9"]
+
+
+def test_the_light_and_the_card_tell_what_is(page: Page, address: str, yard: Waiting) -> None:
+    yard.abandon_run("r-9")
+    light, card = page.locator("#light"), page.locator("[data-machine=zx200]")
+    page.goto(f"{address}/#board")
+    expect(light).to_have_text("● All armed ")
+    expect(card.get_by_role("button", name="Re-arm zx200")).to_have_count(0)
+    yard.board.put_machine(Machine(name="zx200", state="moving", joint_age=0.1))
+    expect(light).to_have_text("▶ Moving zx200")
+    yard.board.put_stop("zx200", LastStop(stamp=datetime(2026, 1, 31, 9, 5, tzinfo=timezone.utc), confirmed=True))
+    yard.receive(latch=view(SoftwareStop()))
+    yard.board.put_runs([])
+    expect(light).to_have_text("⬣ Stopped zx200, ic120")
+    expect(card).to_contain_text("Stopped because: software stop (since ")
+    expect(card).to_contain_text("Seen to stand 31 Jan")
+    expect(card.get_by_role("button", name="Re-arm zx200")).to_be_visible()
+    page.locator("#language").click()
+    expect(light).to_contain_text("停止中")
+    expect(card).to_contain_text("に静止を確認")
+
+
+def test_a_process_that_cannot_be_kept_up_is_an_alarm(page: Page, address: str, yard: Waiting) -> None:
+    rows = [Process(name="tms:db", state="FATAL"), Process(name="zx200:st_swing", state="STOPPED")]
+    yard.board.put_host(Host(name="pc", processes=rows))
+    page.goto(f"{address}/#board")
+    expect(page.locator("#list_alarms li")).to_contain_text(["Process tms:db does not run."])
+    yard.now += 7
+    yard.receive()
+    expect(page.locator("#list_alarms li")).to_contain_text(["PC pc says nothing."])
+
+
+def test_a_shared_place_is_taken_from_its_holder(page: Page, address: str, yard: Waiting) -> None:
+    facts = {"run": "", "since": NOON}
+    waits = PlaceRequest(machine="ic120", **facts)
+    held = SharedPlace(name="ramp", state="held", holder="zx200", queue=[waits], reason=None, **facts)
+    yard.board.put_shared(SharedPlaces(places=[held]))
+    page.goto(f"{address}/#board")
+    row = page.locator("[data-place=ramp]")
+    expect(row).to_contain_text("zx200 (since 31 Jan")
+    expect(row).to_contain_text("ic120 waits since 31 Jan")
+    row.get_by_role("button", name="Take ramp from its holder").click()
+    page.get_by_role("button", name="Do it").click()
+    expect(page.locator("#message")).to_have_text("ramp: taken from zx200")
+    assert ("revoke", "ramp") in [call[:2] for call in yard.calls]
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_on_a_phone_everything_is_in_reach(page: Page, address: str, yard: Waiting, scheme: str) -> None:
+    page.emulate_media(color_scheme=scheme)  # type: ignore[arg-type]
+    page.set_viewport_size({"width": 390, "height": 844})
+    yard.receive(latch=view(SoftwareStop()))
+    yard.board.put_host(Host(name="pc", processes=[Process(name="tms:db", state="FATAL")]))
+    page.goto(f"{address}/#board")
+    expect(page.locator("#list_interrupted li")).to_be_visible()
+    for name in ("Run task 4", "Re-arm zx200", "Resume run r-9", "Software stop"):
+        box = page.get_by_role("button", name=name, exact=True).bounding_box()
+        assert box and box["x"] >= 0 and box["x"] + box["width"] <= 390, name
+        assert box["height"] >= 44, name
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390
+    found = Axe().run(page)
+    assert found.violations_count == 0, found.generate_report()

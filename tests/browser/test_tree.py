@@ -1,0 +1,82 @@
+"""The live tree at field size: it follows the running leaf, what has ended folds, and a node tells more."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from tms_ur.models import Event
+from unit.tms_ur.fakes import NOON
+from yard import RUN, Yard, serving
+
+pytestmark = pytest.mark.browser
+BRANCHES, LEAVES = 27, 9  # 271 nodes, as the largest task of the field has
+
+
+def shape() -> dict[str, list[str]]:
+    leaves = [(f"0.{b}", [f"0.{b}.{leaf}" for leaf in range(LEAVES)]) for b in range(BRANCHES)]
+    paths = ["0", *(path for branch, below in leaves for path in (branch, *below))]
+    deep = [path.count(".") == 2 for path in paths]
+    types = ["LeafNodeZx200" if leaf else "Sequence" for leaf in deep]
+    goals = [f'model_name="zx200" subtask_name="dig" record_name="R{path}"' for path in paths]
+    ports = [goal if leaf else "" for goal, leaf in zip(goals, deep, strict=True)]
+    kinds = ["action" if leaf else "control" for leaf in deep]
+    return {"paths": paths, "names": types, "types": types, "kinds": kinds, "ports": ports}
+
+
+SHAPE = shape()
+
+
+@pytest.fixture
+def yard() -> Yard:
+    yard = Yard()
+    yard.receive()
+    yard.journals = {"r-1": [Event(number=1, stamp=NOON, kind="tree", node="", text="", values={**SHAPE})]}
+    return yard
+
+
+@pytest.fixture
+def address(yard: Yard, tmp_path: Path) -> Iterator[str]:
+    with serving(yard, tmp_path) as address:
+        yield address
+
+
+def work(yard: Yard, leaf: str) -> None:
+    """All before it have ended, and it works."""
+    at = SHAPE["paths"].index(leaf)
+    on = {"0", leaf, leaf.rpartition(".")[0]}
+    states = "".join("1" if p in on else "2" if i < at else "0" for i, p in enumerate(SHAPE["paths"]))
+    yard.board.put_runs([RUN.model_copy(update={"leaf": leaf, "nodes": states})])
+
+
+def test_a_large_tree_follows_its_run(page: Page, address: str, yard: Yard) -> None:
+    work(yard, "0.3.2")
+    page.goto(f"{address}/#tree")
+    box = page.locator("#tree_box")
+    leaf = box.locator("[data-path='0.3.2']")
+    expect(leaf).to_be_in_viewport(ratio=1)
+    expect(leaf).to_have_attribute("data-state", "running")
+    expect(leaf).to_contain_text("zx200: dig R0.3.2")
+    work(yard, "0.25.8")
+    leaf = box.locator("[data-path='0.25.8']")
+    expect(leaf).to_be_in_viewport(ratio=1)
+    size = leaf.bounding_box()
+    assert size and size["height"] >= 20  # px, legible
+    expect(box.locator("[data-path='0.3.2']")).to_have_count(0)  # its branch has folded
+
+
+def test_a_node_that_is_clicked_on_opens_and_tells_more(page: Page, address: str, yard: Yard) -> None:
+    work(yard, "0.3.2")
+    page.goto(f"{address}/#tree")
+    expect(page.locator("[data-path='0.3.2']")).to_be_in_viewport(ratio=1)
+    page.locator("[data-path='0.3.2']").click()
+    details = page.locator("#node_details")
+    expect(details).to_contain_text("R0.3.2")
+    expect(details).to_contain_text("Running")
+    page.get_by_role("button", name="Fit").click()
+    branch = page.locator("[data-path='0.4']")
+    expect(branch).to_contain_text(f"(+{LEAVES})")
+    branch.click()
+    expect(branch).not_to_contain_text("(+")
+    expect(page.locator("[data-path='0.4.0']")).to_have_count(1)

@@ -1,0 +1,84 @@
+"""A site that a test makes up, behind a real console: two machines, no ROS."""
+
+import socket
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from datetime import timedelta
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from conftest import site_data
+from tms_config.clock import utc_now
+from tms_config.config import load_site
+from tms_reason.errors import TmsError
+from tms_reason.reason import Foreign
+from tms_ur.access import Access
+from tms_ur.api import create_app
+from tms_ur.board import Board
+from tms_ur.connections import Listener
+from tms_ur.data_models import Record
+from tms_ur.models import ActiveRun, AddedTemplate, Event, Machine, Rearmed, Run
+from tms_ur.node import Server
+from unit.tms_ur.fakes import NOON, FakeAudit, FakeSiteClient
+
+MACHINES = ("zx200", "ic120")
+RUN = ActiveRun(run_id="r-1", task_id=4, state="running", machines=["zx200"])
+
+
+class Yard(FakeSiteClient):
+    """Two machines, and a clock that the test turns."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.now = 100.0
+        self.board = Board(MACHINES, lambda: self.now)
+        self.slow = threading.Event()  # until then zx200 does not answer
+        self.journals: dict[str, list[Event]] = {}
+        self.taken = False  # whether the template has another text
+
+    def receive(self, **facts: Any) -> None:
+        """Both machines and the scheduler."""
+        for name in MACHINES:
+            self.board.put_machine(Machine(name=name, state="standing", joint_age=0.1, **facts))
+        self.board.put_runs([RUN])
+
+    def rearm(self, machine: str, token: str) -> Rearmed:
+        if machine == "zx200":
+            self.slow.wait(60)
+        return super().rearm(machine, token)
+
+    def add_template(self, name: str, xml: str, description: str, replace: bool) -> AddedTemplate:
+        if self.taken and not replace:
+            raise TmsError(Foreign("it has another text"), "TEMPLATE_EXISTS")
+        return super().add_template(name, xml, description, replace)
+
+    def runs(self, limit: int) -> list[Run]:
+        facts = {"task_id": 4, "description": "", "machines": [], "started_at": NOON, "ended_at": NOON}
+        return [Run(run_id=name, state="abandoned", **facts, values={"nodes": 3}) for name in self.journals]
+
+    def events(self, run_id: str, after: int, limit: int) -> list[Event]:
+        return self.journals[run_id][after : after + limit] if self.journals else super().events(run_id, after, limit)
+
+    def parameters(self, model_name: str) -> list[Record]:
+        written = utc_now() - timedelta(seconds=30)
+        facts = {"type": "static", "description": "", "source": "cli", "updated_at": written, "values": {"d": 1.0}}
+        return [Record(model_name="zx200", record_name="pose", **facts)]
+
+
+@contextmanager
+def serving(yard: Yard, folder: Path) -> Iterator[str]:
+    """Serve its console; gives the address."""
+    file = folder / "site.yaml"
+    file.write_text(yaml.safe_dump(site_data(42, 20000, machines={name: {"model": name} for name in MACHINES})))
+    listener = Listener(fileno=socket.create_server(("127.0.0.1", 0)).detach())
+    application = create_app(yard, FakeAudit(), load_site(str(file)), Access(None))  # type: ignore[arg-type]
+    server = Server(application, listener, None)
+    try:
+        yield f"http://127.0.0.1:{listener.getsockname()[1]}"
+    finally:
+        yard.slow.set()
+        yard.board.close()
+        server.stop()
