@@ -6,6 +6,7 @@ from datetime import datetime, timedelta
 
 import pytest
 from builtin_interfaces.msg import Time
+from fastapi import FastAPI
 from tms_msg_areas import msg as areas
 
 from tms_config.clock import utc_now
@@ -559,6 +560,18 @@ def test_a_scene_that_there_is_not(site_client: FakeSiteClient) -> None:
 
 
 # the document
+
+
+def test_the_document_is_made_once_when_it_is_asked_for(
+    site_client: FakeSiteClient, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It takes as long as all the rest of the application, which starts a hundred times for each time it is read."""
+    made, make = list[FastAPI](), FastAPI.openapi
+    monkeypatch.setattr(FastAPI, "openapi", lambda app: (made.append(app), make(app))[1])
+    client = Client(app(site_client))
+    assert made == []
+    first, second = (client.get("/openapi.json") for _ in range(2))
+    assert first.content == second.content and len(made) == 1
 
 
 def test_every_endpoint_is_in_the_document(client: Client) -> None:
