@@ -32,7 +32,11 @@ class AreaWalls:
         found, areas = self._app.ros.call(GetParameters, service, request, LIMIT).values
         if found.string_value != self._id:
             self._bodies, self._id = _walls(areas.string_value), found.string_value
-        return [one for one in self._bodies if one.gaps(self._outline, array(here))[0] > 0]
+        place, reach = array(here), self._outline.reach
+        apart = (
+            not len(one.close(place[:, :2], reach)) or one.gaps(self._outline, place)[0] > 0 for one in self._bodies
+        )
+        return [one for one, away in zip(self._bodies, apart, strict=True) if away]
 
 
 def _walls(document: str) -> list[Body]:

@@ -19,7 +19,9 @@ from tms_areas.law import Law
 from tms_areas.reach import Place
 
 SECONDS = 60.0  # of a history
-BLIND, MOVES = 1.2, 0.1  # s without a right pose after which a machine must not be driven any more, at more than m/s
+# A machine that goes faster than m/s for some seconds without a right pose must not be driven any more. While it stands
+# nobody sees that its localisation hangs.
+BLIND, MOVES = 1.2, 0.1
 BEAT = 0.05  # s between looks of the gateway
 LINK = 0.08  # s at most from a decision to the command at the machine
 GENTLE = 0.8  # share of the acceleration with which a driver brakes for its goal
@@ -234,6 +236,7 @@ def run(seed: int, guarded: bool = True, keeps_on: float = math.inf, dash: bool 
         driver.until, driver.wish = math.inf, _dash(seed, what.tracks)
         told.delay, told.noise, told.drift = SLOWEST, 0.002, SURE
     going, stopped, next_beat, wrong = False, False, 0.0, False
+    stood_at = 0.0
     wished = (0.0, 0.0)
     for step in range(round(SECONDS / STEP)):
         plant.step()
@@ -267,7 +270,8 @@ def run(seed: int, guarded: bool = True, keeps_on: float = math.inf, dash: bool 
                 plant.command(*wished, r.uniform(0, 0.02))
             else:
                 wished = (0.0, 0.0)
-        if guarded and going and abs(plant.v) > MOVES and now - told.right_at > BLIND:
+        stood_at = stood_at if abs(plant.v) > MOVES else now
+        if guarded and going and now - max(told.right_at, stood_at) > BLIND:
             out.blind = now
             break
         if step % 10 == 0 and what.rules.broken(outline, plant.x, plant.y, plant.yaw):
