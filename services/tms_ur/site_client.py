@@ -30,16 +30,17 @@ from tms_msg_ts.srv import AnswerQuestion, CancelRun, CheckTask
 from tms_config.clock import monotonic
 from tms_config.config import Site
 from tms_decision.gateway.stops import RECEIPT_LIMIT
-from tms_interfaces.generated import Coded, Reply, Req, ServiceType
+from tms_interfaces.generated import Reply, Req, ServiceType
 from tms_machine.places import PERIOD, Places
 from tms_machine.values import to_parameters
 from tms_reason import wire
 from tms_reason.errors import RosError, TmsError
 from tms_reason.names import check_sent
-from tms_reason.reason import Foreign, Reason
+from tms_reason.reason import Reason
 from tms_ros.client import Call
 from tms_ros.node import Ros
 from tms_ur import messages
+from tms_ur.answers import checked, error_in
 from tms_ur.board import Board
 from tms_ur.data_models import Change, Record, Sensing
 from tms_ur.models import AddedTemplate, Event, Host, Place, Rearmed, Receipt, Run, Task, TaskText, Template
@@ -193,7 +194,7 @@ class SiteClient:
         if call.result is None:
             raise TmsError(StartRefused(SCHEDULER))
         if call.result.outcome == "refused":
-            raise _error(call.result)
+            raise error_in(call.result)
         return str(call.result.run_id)  # it ended before its first feedback
 
     def cancel_run(self, run_id: str) -> None:
@@ -269,13 +270,13 @@ class SiteClient:
         """
         host = self._host_of(process)
         request = ControlProcess.Request(name=process, command="restart")
-        _checked(self._ros.call(ControlProcess, f"/tms/host/{host}/control", request, PROCESS_LIMIT))
+        checked(self._ros.call(ControlProcess, f"/tms/host/{host}/control", request, PROCESS_LIMIT))
 
     def log(self, process: str, size: int) -> str:
         """The end of a process's log."""
         request = ReadLog.Request(name=process, bytes=size)
         answer = self._ros.call(ReadLog, f"/tms/host/{self._host_of(process)}/log", request, CALL_LIMIT)
-        return _checked(answer).text
+        return checked(answer).text
 
     def _host_of(self, process: str) -> str:
         host = self.board.host_of(process)
@@ -287,18 +288,7 @@ class SiteClient:
         request_type: Any = service_type.Request
         request: Req = request_type(**fields)
         check_sent(name, request)
-        return _checked(self._ros.call(service_type, name, request, CALL_LIMIT))
-
-
-def _checked(answer: Reply) -> Reply:
-    if answer.error_code:
-        raise _error(answer)
-    return answer
-
-
-def _error(answer: Coded) -> TmsError:
-    """The error in an answer."""
-    return TmsError(wire.of(answer.error_msg) or Foreign(answer.error_code), answer.error_code)
+        return checked(self._ros.call(service_type, name, request, CALL_LIMIT))
 
 
 def _begun(call: Call[ExecuteTask.Result, ExecuteTask.Feedback]) -> bool:
