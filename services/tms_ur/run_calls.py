@@ -5,13 +5,12 @@ from typing import Any
 from tms_msg_ts import srv
 from tms_msg_ts.action import ExecuteTask
 
-from tms_interfaces.generated import Coded, Reply, Req, ServiceType
-from tms_reason import wire
+from tms_interfaces.generated import Reply, Req, ServiceType
 from tms_reason.errors import RosError, TmsError
 from tms_reason.names import check_sent
-from tms_reason.reason import Foreign
 from tms_ros.client import Call
 from tms_ros.node import Ros
+from tms_ur.answers import checked, error_in
 from tms_ur.reasons import RunNotBegun, StartRefused
 from tms_ur.start_models import ResumePlan
 
@@ -44,7 +43,7 @@ class RunCalls:
         if call.result is None:
             raise TmsError(StartRefused(SCHEDULER))
         if call.result.outcome == "refused":
-            raise _error(call.result)
+            raise error_in(call.result)
         return str(call.result.run_id)  # it ended before its first feedback
 
     def cancel_run(self, run_id: str) -> None:
@@ -85,22 +84,6 @@ class RunCalls:
         request: Req = request_type(**fields)
         check_sent(name, request)
         return checked(self._ros.call(service_type, name, request, CALL_LIMIT))
-
-
-def checked(answer: Reply) -> Reply:
-    """The answer, if it tells no error.
-
-    Raises:
-        TmsError: the error in the answer.
-    """
-    if answer.error_code:
-        raise _error(answer)
-    return answer
-
-
-def _error(answer: Coded) -> TmsError:
-    """The error in an answer."""
-    return TmsError(wire.of(answer.error_msg) or Foreign(answer.error_code), answer.error_code)
 
 
 def _begun(call: Call[ExecuteTask.Result, ExecuteTask.Feedback]) -> bool:
