@@ -46,7 +46,6 @@ from tms_ur.models import AddedTemplate, Event, Host, Place, Rearmed, Receipt, R
 from tms_ur.reason_view import of_error, of_line, view
 from tms_ur.reasons import RunNotBegun, StartRefused, UnknownProcess
 from tms_ur.scene_models import Scene, scene
-from tms_ur.watch_models import EnabledAreas
 from tms_ur.watching import Watching
 
 SCHEDULER = "tms:ts"
@@ -62,7 +61,7 @@ class SiteClient:
         names = list(site.file.machines)
         self._ros = ros
         self.board = Board(names)
-        self._watching = Watching(ros, site, self.board)
+        self.watching = Watching(ros, site, self.board)
         self._inputs: tuple[list[InputState], float] | None = None  # read and replaced in one step
         self._scheduler = ros.peer(ExecuteTask, "/tms/execute_task")
         self._places = Places(ros, {name: site.border(name) for name in names})
@@ -252,10 +251,6 @@ class SiteClient:
             TmsError: something of it is not known, or the planner is away.
         """
         return scene(machine, self._ask(GetScene, f"/{machine}/rp/get_scene"))
-
-    def areas(self) -> EnabledAreas:
-        """The enabled areas, as a gateway tells them."""
-        return self._watching.areas()
 
     # processes
 
