@@ -45,6 +45,8 @@ def test_a_site_whose_ground_is_wrong(checked: Callable[[dict[str, Any]], Any], 
 
 def test_a_site_whose_trackers_are_wrong(checked: Callable[[dict[str, Any]], Any], tmp_path: Path) -> None:
     (tmp_path / "sensing.yaml").write_text("trackers: {eye: {kind: person, topic: eye}}")
+    site = tmp_path / "site.yaml"
+    site.write_text(site.read_text() + "sensing: sensing.yaml\n")
     found = checked(MODEL).exception
     assert found.reason.find(TrackersNeedAreas) is not None
 
