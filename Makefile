@@ -152,7 +152,7 @@ coverage: setup ## unit tests take every branch of the decisions and proofs
 	$(PY) -m coverage run --data-file=$(VENV)/coverage --branch --source tms_decision,tms_proof -m pytest -q tests/unit/tms_decision tests/unit/tms_proof tests/unit/tms_ts/test_interrupted.py
 	$(PY) -m coverage report --data-file=$(VENV)/coverage --show-missing --skip-covered --fail-under=100
 
-nightly: setup ## what takes hours: properties with 400 examples, 100,000 schedules, all mutants, mutmut, replays and 30 power cuts (as root), 60 m3 of earth with kills, a long drill
+nightly: setup ## what takes hours: properties with 400 examples, 100,000 schedules, all mutants, mutmut, replays and 30 power cuts (as root), 60 m3 of earth with kills, 50 rounds of two trucks and a road, a long drill
 	$(PY) -m pytest -q -n $(WORKERS) --hypothesis-profile=thorough tests/unit
 	@$(MAKE) coverage
 	@$(MAKE) simulate SCHEDULES=100000
@@ -162,6 +162,7 @@ nightly: setup ## what takes hours: properties with 400 examples, 100,000 schedu
 	@$(MAKE) mutmut
 	TMS_POWER_CUTS=30 $(PY) -m pytest tests/system/test_power_cut.py
 	TMS_EARTH=60 $(PY) -m pytest tests/system/test_earthwork.py -k killed
+	TMS_ROUNDS=50 $(PY) -m pytest tests/system/test_shared_places.py -k turns
 	@$(MAKE) replay
 	@$(MAKE) drill ROUNDS=4
 	@$(MAKE) drill SITE=drill-physx ROUNDS=2

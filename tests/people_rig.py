@@ -44,7 +44,7 @@ class Site:
     """What the gateway and the trackers tell, and what happens to them."""
 
     def __init__(self, mesh: Mesh, ros: Ros) -> None:
-        self.mesh, self.ros, self.far = mesh, ros, 0.0
+        self.mesh, self.ros, self.x = mesh, ros, 0.0
         self.state: Any = None
         self.lamp, self.speed, self.reports = "", 0.0, dict[str, Any]()
         self.receipts: list[Any] = []
@@ -65,7 +65,7 @@ class Site:
         self.reports = {one.name: one for one in message.status}
 
     def _odometry(self, message: Odometry) -> None:
-        self.speed = abs(message.twist.twist.linear.x)
+        self.x, self.speed = message.pose.pose.position.x, abs(message.twist.twist.linear.x)
 
     def be(self, **told: object) -> None:
         self._trackers.publish(String(data=json.dumps(told)))
@@ -88,10 +88,10 @@ class Site:
     def drive(self) -> Any:
         """Drive ahead, far enough to be still under way when something happens."""
         self.arm()
-        self.far = 150.0 - self.far  # to and fro
+        far = 0.0 if self.x > 75.0 else 150.0
         goal = NavigateToPose.Goal(pose=PoseStamped())
         goal.pose.header.frame_id = "map"
-        goal.pose.pose.position.x, goal.pose.pose.position.y = self.far, -3.77
+        goal.pose.pose.position.x, goal.pose.pose.position.y = far, -3.77
         goal.pose.pose.orientation.w = 1.0
         peer = self.ros.peer(NavigateToPose, f"/{MACHINE}/rc/navigate_to_pose")
         wait_until(peer.ready, 20, "the gateway serves")

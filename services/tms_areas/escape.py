@@ -15,7 +15,8 @@ import shapely
 from tms_areas.body import Body, Silhouette
 from tms_areas.fix import Motion, Seen
 from tms_areas.guard import Verdict
-from tms_areas.law import Law, Place, between, shape_of
+from tms_areas.law import Law
+from tms_areas.reach import Place, between, shape_of
 from tms_areas.reasons import ComesFurtherOut, EscapesTooFast, NotFurtherIn, TracksNotSlow
 from tms_reason.reason import Reason
 
@@ -54,9 +55,8 @@ class Trespass:
 class Escape:
     """The guard on the way back. One thread looks, which also remembers how far in the machine has come."""
 
-    def __init__(self, law: Law, silhouette: Silhouette, slow: bool) -> None:
-        """`slow`: whether what drives the tracks keeps to a speed that it is told."""
-        self._law, self._silhouette, self._slow = law, silhouette, slow
+    def __init__(self, law: Law, silhouette: Silhouette) -> None:
+        self._law, self._silhouette = law, silhouette
         self._best: Trespass | None = None
 
     def over(self, seen: Seen, joints: Mapping[str, float]) -> bool:
@@ -86,7 +86,7 @@ class Escape:
         """
         if seen.unsure is not None or seen.motion is None:
             return seen.unsure
-        if not self._slow:
+        if not self._law.slow:
             return TracksNotSlow(self._law.machine)
         body, here = self._silhouette.body([joints]), seen.motion
         places = [(here.x, here.y, here.yaw), *way]

@@ -4,12 +4,14 @@ While its place is not believed, tracks are stopped and held; until then each lo
 stopped inside. An arm may finish where it would be inside even if the last believed place were off some more.
 """
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from tms_areas.body import Silhouette
+from tms_areas.body import Body, Silhouette
 from tms_areas.fix import Seen
-from tms_areas.law import Law, Place
+from tms_areas.law import Law
+from tms_areas.reach import Place
 from tms_reason.reason import Reason
 
 UNSURE = 0.5  # m around an arm that works although the place of its machine is not believed
@@ -29,16 +31,24 @@ class Guard:
     def __init__(self, law: Law, silhouette: Silhouette) -> None:
         self.law, self._silhouette = law, silhouette
 
+    def body(self, joints: Mapping[str, float]) -> Body:
+        """What holds the machine at some joints [rad]."""
+        return self._silhouette.body([joints])
+
     def look(self, seen: Seen, joints: Mapping[str, float], tracks: bool) -> Verdict:
         """Whether a goal may go on; `joints` [rad] now, `tracks`: it drives."""
         unsure, motion = seen.unsure, seen.motion
         if motion is None or (tracks and unsure is not None):
             return Verdict(hold=unsure)
-        body = self._silhouette.body([joints])
+        body = self.body(joints)
         if tracks:
             return Verdict(stop=self.law.driving(body, motion))
         wrong = self.law.working(body, motion, 0.0 if unsure is None else UNSURE)
         return Verdict(stop=wrong) if unsure is None or wrong is None else Verdict(hold=unsure)
+
+    def pace(self, seen: Seen, joints: Mapping[str, float]) -> float:
+        """How fast the tracks may go now [m/s]; infinite where nothing limits them."""
+        return math.inf if seen.motion is None else self.law.pace(self._silhouette.body([joints]), seen.motion)
 
     def may_drive(self, seen: Seen, joints: Mapping[str, float], way: Sequence[Place], told: bool) -> Reason | None:
         """Why tracks must not go to the last of some places by way of the others.
@@ -51,7 +61,7 @@ class Guard:
         if wrong is not None or motion is None:
             return wrong
         here = (motion.x, motion.y, motion.yaw)
-        body = self._silhouette.body([joints])
+        body = self.body(joints)
         if told:
             return self.law.path(body, (here, *way)) or self.law.arriving(body, way[-1])
         found = (self.law.arriving(body, place) or self.law.apart(here, place) for place in way)

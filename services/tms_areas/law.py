@@ -9,77 +9,65 @@ to both sides as far as tracks can change their course meanwhile; and around all
 import itertools
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 from shapely.geometry.base import BaseGeometry
 
 from tms_areas.areas import FORBIDDEN, AreaSet
 from tms_areas.body import Body
-from tms_areas.braking import Axis, Tracks
-from tms_areas.fix import WINDOW, Motion
+from tms_areas.braking import Tracks
+from tms_areas.fix import Motion
+from tms_areas.reach import (
+    Array,
+    Covered,
+    Place,
+    Reach,
+    between,
+    covered_by,
+    ends,
+    nearest,
+    place_of,
+    places_of,
+    shape_of,
+)
 from tms_areas.reasons import EntersArea, LeavesArea, NoWay, TooFastFor
 from tms_reason.reason import Reason
 
 DELAY = 0.15  # s from where a machine is to the message that says so
 BEAT = 0.15  # s from one look at the newest pose to the next one, and until its command has left
 FASTER = 1.15  # times a speed limit that a measured speed may be
+HEED, GENTLE = 1.5, 0.4  # s until tracks obey a speed limit, and share of their acceleration with which they slow down
+HEEDED = 0.9  # times a limit that they are told: what is measured varies
 SPARE = 0.15  # m more for what is planned: poses vary while it drives
 PLANNED = 0.1  # s, age of a pose that plans reckon with
-STEP, TURN = 0.5, 0.1  # m and rad between looks at a path
 SPOT = 0.05  # m; a turn over a shorter way is one on the spot
 STRAY = 0.05  # m that tracks may slip to any side while they brake
-
-Array = NDArray[np.float64]
-Shapes = NDArray[np.object_]
-Place = tuple[float, float, float]  # x, y [m], yaw [rad] in `map`
-
-
-@dataclass(frozen=True)
-class Reach:
-    """How far the base can come until it stands: the least and the most forward [m], to the left [m], and turned."""
-
-    back: float
-    ahead: float
-    side: float
-    right: float  # rad
-    left: float  # rad
-    around: float  # m in any direction in addition
-
-    @property
-    def most(self) -> float:
-        """For people: what it needs to stop [m]."""
-        return max(abs(self.back), abs(self.ahead), abs(self.side)) + self.around
-
-
-@dataclass(frozen=True)
-class Covered:
-    """A convex polygon for each part of a machine, and how much around it [m] the part may cover too."""
-
-    shapes: Shapes
-    around: Array
-
-    @property
-    def parts(self) -> list[tuple[BaseGeometry, float]]:
-        """Each with what is around it."""
-        return list(zip(self.shapes, self.around.tolist(), strict=True))
 
 
 class Law:
     """The areas that are enabled, for one machine."""
 
-    def __init__(self, areas: AreaSet, machine: str, tracks: Tracks | None, held: frozenset[str] = frozenset()) -> None:
-        """`held`: the release areas whose holder the machine is."""
+    def __init__(
+        self,
+        areas: AreaSet,
+        machine: str,
+        tracks: Tracks | None,
+        held: frozenset[str] = frozenset(),
+        slow: bool = False,
+    ) -> None:
+        """`held`: the release areas whose holder the machine is; `slow`: what drives its tracks takes speed limits."""
         self.areas, self.machine, self.tracks = areas, machine, tracks
+        self.held, self.slow = held, slow
         self._usable = areas.usable(held)
         self._border = self._usable.boundary
         self._pieces = shapely.get_parts(self._usable)
         self._closed = [one for one in areas.of(*FORBIDDEN, "release") if one.id not in held]
         self._unmanned = shapely.union_all([one.polygon for one in areas.of("unmanned")])
         self._limits = areas.of("speed_limit")
+        self._limited = np.array([one.polygon for one in self._limits], dtype=object)
         self._closed_tree = shapely.STRtree([one.polygon for one in self._closed])
         ends = [pair for line in shapely.get_parts(self._border) for pair in itertools.pairwise(line.coords)]
         self._sides = shapely.linestrings(ends)  # of the border: a tree of them finds the nearest one at once
@@ -91,15 +79,32 @@ class Law:
 
     def driving(self, body: Body, motion: Motion) -> Reason | None:
         """Why tracks must stop now; None if they may go on until the next look."""
-        reach = self._reach(motion)
-        covered = _covered(body, _places(motion, reach), (reach.left - reach.right) / 4, reach.around)
+        reach, covered = self._reach(motion), self.until_it_stands(body, motion)
         wrong = self._outside(covered, body, motion, reach.most)
         return wrong if wrong is not None else self._too_fast(covered, math.hypot(motion.vx, motion.vy))
+
+    def until_it_stands(self, body: Body, motion: Motion) -> Covered:
+        """All that a machine on tracks may cover until a stop that is commanded at the next look has worked."""
+        reach = self._reach(motion)
+        return covered_by(body, places_of(motion, reach), (reach.left - reach.right) / 4, reach.around)
+
+    @staticmethod
+    def now(body: Body, motion: Motion) -> Covered:
+        """What a machine covers where it is, with what its pose may be off."""
+        return covered_by(body, place_of(motion), 0.0, motion.off)
+
+    def pace(self, body: Body, motion: Motion) -> float:
+        """How fast tracks may go [m/s]: as a speed limit says that is nearer than they need to slow down."""
+        if self.tracks is None or not self._limits:
+            return math.inf
+        near = shapely.dwithin(self._limited, shape_of(body, motion), self._slowing)
+        return min((HEEDED * (one.speed or 0.0) for one, slow in zip(self._limits, near, strict=True) if slow),
+                   default=math.inf)  # fmt: skip
 
     def working(self, body: Body, motion: Motion, more: float = 0.0) -> Reason | None:
         """Why a machine must not move its joints, standing; `more`: m around it in addition to what its pose is off."""
         around = motion.off + more
-        return self._outside(_covered(body, _place(motion), 0.0, around), body, motion, around)
+        return self._outside(covered_by(body, place_of(motion), 0.0, around), body, motion, around)
 
     # before a goal
 
@@ -140,7 +145,7 @@ class Law:
         return speed, turn / way * speed
 
     def _planned(self, body: Body, motion: Motion, reach: Reach) -> Reason | None:
-        covered = _covered(body, _places(motion, reach), (reach.left - reach.right) / 4, reach.around + SPARE)
+        covered = covered_by(body, places_of(motion, reach), (reach.left - reach.right) / 4, reach.around + SPARE)
         return self._outside(covered, body, motion, reach.most) or self._slow(covered)
 
     def apart(self, here: Place, there: Place) -> Reason | None:
@@ -183,6 +188,21 @@ class Law:
         ]
         return float(max(ahead))
 
+    @cached_property
+    def _slowing(self) -> Array:
+        """How far before each speed limit tracks at top speed must be told it [m].
+
+        They must have obeyed before the limit is in what they could reach until they stand.
+        """
+        if self.tracks is None:
+            return np.zeros(len(self._limits))
+        forward = self.tracks.forward
+        stop = self._reach(Motion(0.0, 0.0, 0.0, forward.top, age=PLANNED)).most
+        limits = np.array([one.speed or 0.0 for one in self._limits])
+        slower = np.maximum(forward.top**2 - limits**2, 0.0) / (2 * GENTLE * forward.acceleration)
+        way: Array = stop + HEED * forward.top + slower
+        return way
+
     def _reach(self, motion: Motion) -> Reach:
         if self.tracks is None:
             return Reach(0.0, 0.0, 0.0, 0.0, 0.0, motion.off)
@@ -190,8 +210,8 @@ class Law:
         forward, aside = c * motion.vx + s * motion.vy, c * motion.vy - s * motion.vx
         blind = motion.age + DELAY + BEAT + self.tracks.dead_time
         factor = self.tracks.factor
-        back, ahead = _ends(self.tracks.forward, forward, blind, factor)
-        right, left = _ends(self.tracks.turning, motion.turning, blind, factor)
+        back, ahead = ends(self.tracks.forward, forward, blind, factor)
+        right, left = ends(self.tracks.turning, motion.turning, blind, factor)
         side = aside * blind + math.copysign(self.tracks.forward.braking(aside), aside) * factor
         return Reach(back, ahead, side, right, left, motion.off + STRAY)
 
@@ -209,9 +229,9 @@ class Law:
         if len(entered):
             gaps = shapely.distance(self._closed_tree.geometries[entered], now)
             area = self._closed[int(entered[gaps.argmin()])]
-            gap, x, y = _nearest(area.polygon, now)
+            gap, x, y = nearest(area.polygon, now)
             return EntersArea(self.machine, area.id, gap, needed, x, y)
-        gap, x, y = _nearest(self._sides[self._tree.query_nearest(now, all_matches=False)[0]], now)
+        gap, x, y = nearest(self._sides[self._tree.query_nearest(now, all_matches=False)[0]], now)
         at = shapely.Point(x, y)
         left = min(self.areas.of("unmanned"), key=lambda area: float(shapely.distance(area.polygon, at)))
         return LeavesArea(self.machine, left.id, gap if self._usable.contains(now) else 0.0, needed, x, y)
@@ -225,62 +245,7 @@ class Law:
         return None
 
     def _slow(self, covered: Covered) -> Reason | None:
-        """A goal tells no speed, so what drives it may take the machine's top speed anywhere."""
-        return None if self.tracks is None else self._too_fast(covered, self.tracks.forward.top)
-
-
-def _ends(axis: Axis, speed: float, blind: float, factor: float) -> tuple[float, float]:
-    """The least and the most that an axis can go on from a measured speed until it stands [m or rad]."""
-    gain = axis.acceleration * (blind + WINDOW / 2)
-    low, high = max(speed - gain, min(speed, -axis.top)), min(speed + gain, max(speed, axis.top))
-    ends = [one * blind + math.copysign(axis.braking(one), one) * factor for one in (low, high)]
-    return ends[0], ends[1]
-
-
-def between(old: Place, new: Place) -> list[tuple[float, Place]]:
-    """Places on the straight way from one to another, both included, each with its share of the way."""
-    way, turn = math.dist(old[:2], new[:2]), math.remainder(new[2] - old[2], math.tau)
-    shares = np.linspace(0.0, 1.0, 2 + int(max(way / STEP, abs(turn) / TURN))).tolist()
-    return [
-        (share, (old[0] + share * (new[0] - old[0]), old[1] + share * (new[1] - old[1]), old[2] + share * turn))
-        for share in shares
-    ]
-
-
-def shape_of(body: Body, motion: Motion) -> BaseGeometry:
-    """What a machine covers where it is."""
-    return shapely.union_all(_covered(body, _place(motion), 0.0, 0.0).shapes)
-
-
-def _place(motion: Motion) -> Array:
-    return np.array([[motion.x, motion.y, motion.yaw]])
-
-
-def _places(motion: Motion, reach: Reach) -> Array:
-    """Places (N x 3) between and around which the base is until it stands."""
-    turns = sorted({reach.right, (reach.right + reach.left) / 2, reach.left})
-    ends = [(turn, way) for turn in turns for way in {reach.back, reach.ahead}]
-    turn, ahead = np.array([(turn * share, way * share) for turn, way in ends for share in (0.5, 1.0)]).T
-    side = np.tile([0.5 * reach.side, reach.side], len(ends))
-    c, s = np.cos(motion.yaw + turn / 2), np.sin(motion.yaw + turn / 2)
-    x, y = motion.x + c * ahead - s * side, motion.y + s * ahead + c * side
-    return np.concatenate([_place(motion), np.stack([x, y, motion.yaw + turn], axis=1)])
-
-
-def _covered(body: Body, places: Array, between: float, around: float) -> Covered:
-    """What each part covers at places (N x 3), between them, and at headings that are `between` [rad] off."""
-    c, s = np.cos(places[:, 2, None]), np.sin(places[:, 2, None])
-    px, py = np.concatenate([part.corners for part in body.parts]).T
-    x, y = places[:, 0, None] + c * px - s * py, places[:, 1, None] + s * px + c * py
-    part_of = np.repeat(np.arange(len(body.parts)), [len(part.corners) for part in body.parts])
-    corners = np.stack([x.T.ravel(), y.T.ravel()], axis=1)  # by corner of a part, then by place
-    shapes = shapely.convex_hull(shapely.linestrings(corners, indices=np.repeat(part_of, len(places))))
-    bulge = 1.0 - math.cos(min(between, math.pi))
-    return Covered(shapes, np.array([around + part.spin * bulge for part in body.parts]))
-
-
-def _nearest(line: BaseGeometry, shape: BaseGeometry) -> tuple[float, float, float]:
-    """How far a shape is from a line or an area [m], and the place there that is nearest to it."""
-    way = shapely.shortest_line(line, shape)
-    x, y = shapely.get_coordinates(way)[0]
-    return float(way.length), float(x), float(y)
+        """A goal tells no speed: what takes no limit may drive at the machine's top speed anywhere."""
+        if self.tracks is None or self.slow:
+            return None
+        return self._too_fast(covered, self.tracks.forward.top)

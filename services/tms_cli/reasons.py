@@ -88,6 +88,7 @@ class NoXmlHere(Reason, text="{folder}: there are no .xml files in it", action=D
 class InTaskFile(Reason, text="{file}: {why}"): file: str; why: Reason
 class NameTaken(Reason, text="{file} cannot be written ({problem})", action=OTHER_NAME): file: str; problem: str
 class NoAreas(Reason, text="the site has no areas: {folder} holds no .geojson file"): folder: str
+class PlacesUntold(Reason, text="{process} does not tell who holds which place", action=PROCESSES): process: str
 class AreaFileUnread(Reason, text="{file} cannot be read ({problem})", action=OTHER_PLACE): file: str; problem: str
 class AreaFileThere(Reason, text="{file} is there already", action=OTHER_NAME): file: str
 class AreasNotReached(Reason, text="the gateway of {machine} tells nothing of areas: {why}", action=RESTART):

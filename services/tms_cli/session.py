@@ -12,11 +12,11 @@ import click
 
 from tms_cli.reasons import MachineUnknown
 from tms_config.config import Site, load_site
+from tms_interfaces.generated import M, Reply, Req, ServiceType
 from tms_reason import wire
 from tms_reason.errors import ConfigError, TmsError
 from tms_reason.names import check_sent
 from tms_reason.reason import Foreign
-from tms_ros.interface_types import M, Reply, Req, ServiceType
 from tms_runtime import environment, state_folder
 from tms_runtime.priority import undisturbed
 

@@ -42,9 +42,8 @@ class MachineUse(Settings):
     role: Role = "machine"
     start: tuple[float, float, float] | None = None  # x m, y m, yaw rad: start of its stand-in, if not the model's
     hardware: dict[str, Any] = Field(default_factory=dict)  # tms_hardware/settings.py reads it
-    fix: str | None = Field(
-        pattern=r"^[A-Za-z][A-Za-z0-9_/]*$", default=None
-    )  # NavSatFix of its GNSS, below its name, if it has RTK
+    # NavSatFix of its GNSS, below its name, if it has RTK
+    fix: str | None = Field(pattern=r"^[A-Za-z][A-Za-z0-9_/]*$", default=None)
 
 
 class Ports(Settings):

@@ -6,9 +6,9 @@ from prometheus_client import Counter, Histogram
 
 from tms_config.clock import monotonic
 from tms_db.connection import StoreConnection
+from tms_interfaces.generated import Coded, Reply, Req, ServiceType
 from tms_reason.errors import TmsError
 from tms_reason.wire import to_line
-from tms_ros.interface_types import Coded, Reply, Req, ServiceType
 from tms_runtime.app import App
 
 REQUESTS = Counter("tms_db_requests", "Requests answered", ["service", "code"])

@@ -20,6 +20,7 @@ from tms_db.ground_services import GroundServices
 from tms_db.history import History
 from tms_db.machine_states import MachineStates
 from tms_db.parameter_services import ParameterServices
+from tms_db.places import PlaceServices
 from tms_db.retention import Retention
 from tms_db.task_text import MODELS
 from tms_db.tasks import Tasks
@@ -100,6 +101,7 @@ def start(app: App) -> None:
     CppServices(app, db, connection).offer()
     TerrainServices(app, db, connection).offer()
     GroundServices(app, db).offer(answering)
+    PlaceServices(app, db, connection).offer()
     retention = Retention(db, connection, app.site.file.store, app.log)
     app.on_stop(retention.stop)
     retention.start()

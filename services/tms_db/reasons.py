@@ -105,6 +105,9 @@ class BadRunId(Reason, text="run_id '{run}' {why}"): run: str; why: Reason
 class RivalScheduler(Reason, text="another process writes the same journal: only one scheduler may run",
     action=PROCESSES): pass
 
+# shared places
+class PlacesUnreadable(Reason, text="the book of shared places in the database cannot be read", action=PROCESSES): pass
+
 # tasks
 class TaskMissing(Reason, text="there is no task {task}", action=TASKS): task: int
 class NoTaskNumber(Reason, text="no free task number after {attempts} attempts", action=RETRY): attempts: int

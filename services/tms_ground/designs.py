@@ -2,8 +2,6 @@
 
 from tms_config.config import Site
 from tms_config.yaml_file import located
-from tms_ground.files.reading import Given, read
-from tms_ground.frame import SiteFrame
 from tms_ground.settings import Ground
 from tms_reason.errors import ConfigError, TmsError
 from tms_soil.surface import Pit, Plane, Surface
@@ -23,6 +21,9 @@ def surface_of(site: Site, ground: Ground) -> Surface | None:
     if told.pit is not None:
         return Pit(told.pit.floor, told.pit.level, told.pit.slope, told.pit.rim)
     assert told.file is not None
+    from tms_ground.files.reading import Given, read  # here: their libraries take a third of a start of tms:ground
+    from tms_ground.frame import SiteFrame
+
     frame = SiteFrame(ground.origin) if ground.origin is not None else None
     given = Given(told.file.in_map, told.file.epsg, None, told.file.surface, partial=True)
     try:

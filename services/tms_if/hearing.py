@@ -3,9 +3,9 @@
 from collections.abc import Callable
 from typing import Any
 
-from tms_ros.interface_types import Message
+from tms_interfaces.generated import Message
 from tms_ros.node import Ros
-from tms_ros.quality import as_offered
+from tms_ros.quality import topic
 
 
 class Hearing:
@@ -33,7 +33,10 @@ class Hearing:
         self._ros.node.destroy_subscription(self._subscription)
 
     def _wanted(self) -> Any:  # a quality of service of rclpy
-        return as_offered([info.qos_profile for info in self._ros.node.get_publishers_info_by_topic(self._topic)])
+        """A reliable reader would not receive from a best-effort writer, and a volatile reader no earlier messages."""
+        offered = [info.qos_profile for info in self._ros.node.get_publishers_info_by_topic(self._topic)]
+        latched = bool(offered) and all(one.durability.name == "TRANSIENT_LOCAL" for one in offered)
+        return topic(10, latched, any(one.reliability.name == "BEST_EFFORT" for one in offered))
 
     def _subscribed(self) -> Any:
         return self._ros.subscribe_raw(self._kind, self._topic, self._on_message, self._quality)

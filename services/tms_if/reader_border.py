@@ -16,8 +16,8 @@ from tms_msg_db.msg import Tmsdb  # these three in the forms of version 6
 from tms_msg_db.srv import TmsdbGetData, TmsdbGetTask
 from tms_msg_if.srv import ReadRecords, ReadTemplate
 
+from tms_interfaces.generated import Req, Res, ServiceType
 from tms_machine.frames import MAP
-from tms_ros.interface_types import Req, Res, ServiceType
 from tms_runtime.app import App
 
 TEMPLATES, RECORDS = "tms_db_reader_subtask", "tms_db_param_reader"

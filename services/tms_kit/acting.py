@@ -9,6 +9,7 @@ from tms_config.models import Joint, MachineModel
 from tms_config.naming import process_of
 from tms_decision.gateway.stops import STOP_PROVEN
 from tms_decision.reasons import ProcessLost
+from tms_interfaces.generated import ActionType, F, G, R
 from tms_kit.yard import Yard
 from tms_machine.reasons import (
     Aborted,
@@ -26,7 +27,6 @@ from tms_reason.errors import SubtaskFailed
 from tms_reason.reason import Reason, Several
 from tms_ros.client import AnyCall, AnyPeer
 from tms_ros.goals import Outcome
-from tms_ros.interface_types import ActionType, F, G, R
 from tms_ros.node import Ros
 from tms_ros.reasons import LostMeanwhile, NoAnswer
 from tms_runtime.fence import derived

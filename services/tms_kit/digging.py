@@ -8,10 +8,10 @@ from tms_msg_rp.action import Excavate, ExecutePlans, PlanPose, Release, TmsRpZx
 from tms_msg_rp.msg import TmsRpZx200PositionWithAngle
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
+from tms_interfaces.generated import ActionType, G, Message, R
 from tms_kit.acting import Acting, Progress
 from tms_machine.reasons import NoReason
 from tms_reason import wire
-from tms_ros.interface_types import ActionType, G, Message, R
 
 
 class Feedback(Message, Protocol):

@@ -7,6 +7,7 @@ from tms_msg_rp.srv import CheckMotion
 from trajectory_msgs.msg import JointTrajectory
 
 from tms_config.models import MachineModel
+from tms_interfaces.generated import ActionType, F, G, R
 from tms_kit.machine import Machine
 from tms_kit.subtask import load
 from tms_kit.yard import Yard
@@ -14,7 +15,6 @@ from tms_machine.goal_inputs import Inputs
 from tms_machine.values import Value
 from tms_reason.errors import SubtaskFailed
 from tms_reason.wire import refusal
-from tms_ros.interface_types import ActionType, F, G, R
 from tms_ros.node import Ros
 from tms_ros.packing import pack
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import cached_property
 
 import numpy as np
 from tms_msg_ground.msg import SoilLoad
@@ -13,6 +14,7 @@ from tms_config.models import MachineModel
 from tms_control.ground import Outline
 from tms_control.links import Links, Matrix, placed
 from tms_kit.reasons import LoadNotTold, PlaceNotTold
+from tms_kit.site_places import SitePlaces
 from tms_machine.frames import FramePose
 from tms_machine.places import Places
 from tms_machine.reasons import WaitingFor
@@ -41,6 +43,11 @@ class Yard:
             for name, model in models.items()
             if model.bucket or model.vessel
         }
+
+    @cached_property
+    def shared(self) -> SitePlaces:
+        """The shared places of the site."""
+        return SitePlaces(self._ros)
 
     def model(self, machine: str) -> MachineModel:
         """The model of a machine of the site; ConfigError where there is none."""

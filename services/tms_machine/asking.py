@@ -1,8 +1,8 @@
 """Asks services of ours, whose answer may be a refusal."""
 
+from tms_interfaces.generated import Reply, Req, ServiceType
 from tms_reason.errors import RosError
 from tms_reason.wire import refusal
-from tms_ros.interface_types import Reply, Req, ServiceType
 from tms_ros.node import Ros
 
 

@@ -15,7 +15,7 @@ from tms_msg_rp.action import TmsRpBulldozerBlade
 
 from tms_config.clock import monotonic
 from tms_config.models import Border
-from tms_ros.interface_types import ActionType, Publisher
+from tms_interfaces.generated import ActionType, Publisher
 from tms_ros.node import Ros
 
 CANCEL_LIMIT = 3.0  # s after which a server without an answer has lost a cancel
@@ -90,8 +90,8 @@ class Controls:
         emg_stop = f"/{machine}/{border.emg_stop}"
         self._emg_stop: Publisher[Bool] | None = None
         if border.emg_stop:
-            made = ros.publisher(Bool, emg_stop, 1, latched=True) if keeps_emergency else None
-            self._emg_stop = made or ros.fading_publisher(Bool, emg_stop, PRESS_LIVES)
+            lives = 0.0 if keeps_emergency else PRESS_LIVES
+            self._emg_stop = ros.publisher(Bool, emg_stop, 1, latched=True, lives=lives)
 
     def cancel_everything(self) -> None:
         """Cancel the goals of all clients, by requests with zero id."""

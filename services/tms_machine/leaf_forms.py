@@ -7,9 +7,9 @@ from tms_msg_ts.action import LeafNodeBase
 
 from tms_config.config import Site
 from tms_config.naming import LEAF_GOAL
+from tms_interfaces.generated import ActionType
 from tms_machine import peer_forms
 from tms_reason.reason import Reason
-from tms_ros.interface_types import ActionType
 from tms_ros.node import Ros
 
 LeafAction = ActionType[LeafNodeBase.Goal, LeafNodeBase.Result, LeafNodeBase.Feedback]

@@ -9,7 +9,8 @@ from typing import Any
 
 from tms_machine.reasons import FormContradicted, FormUnknown
 from tms_reason.reason import Reason
-from tms_ros.node import Ros, node_of
+from tms_ros.node import Ros
+from tms_runtime.graph import node_of
 
 # Hashes of the requests of SendGoal: of all parts of these actions, only the goal differs (tests/contract).
 HASHES = {

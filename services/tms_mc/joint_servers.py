@@ -15,6 +15,7 @@ from tms_control.arm_motion import ArmMotion, Tolerances
 from tms_control.reference_trajectory import refusal
 from tms_control.turning import turning
 from tms_control.verdict import Ending
+from tms_interfaces.generated import ActionType
 from tms_machine import stamps
 from tms_machine.motion_messages import knots
 from tms_machine.stamps import duration
@@ -24,7 +25,6 @@ from tms_mc.reasons import JointLimit, NoAngle, Stopped
 from tms_reason.reason import Reason
 from tms_reason.wire import to_line
 from tms_ros.goals import Ended, Outcome
-from tms_ros.interface_types import ActionType
 from tms_ros.server import AnyGoal
 
 FEEDBACK = 0.1  # s

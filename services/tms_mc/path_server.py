@@ -43,7 +43,7 @@ class PathServer:
             return _failed(unknown)
         start = pose_of(request.start) if request.use_start else self._tracks.pose
         try:
-            self._around.read()
+            self._around.read(start)
         except SubtaskFailed as error:
             return _failed(error.reason)
         found = self._way(start, pose_of(request.goal), goal.cancelled.is_set)

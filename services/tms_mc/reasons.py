@@ -34,6 +34,9 @@ class SectionUnfit(Reason, text="record '{section}' needs x and y, as numbers or
 class ManyPlaces(Reason, text="all roads together have {count} places every five metres, more than {most}"):
     count: int; most: int
 
+# what a way keeps clear of
+class AreaBorder(Reason, text="the border of the areas where it may be"): pass
+
 # the end of a goal
 class GatewayGone(Reason, text="the gateway was lost while the machine moved"): pass
 class ControllerStood(Reason, text="the motion controller did not run for {seconds}", action=PROCESSES):

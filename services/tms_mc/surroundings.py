@@ -11,6 +11,7 @@ from tms_control.roads import Roads
 from tms_machine.drift import drift
 from tms_machine.places import PERIOD, Places
 from tms_machine.values import Value
+from tms_mc.area_walls import AreaWalls
 from tms_mc.blocked_areas import RECORD as AREAS
 from tms_mc.blocked_areas import areas
 from tms_mc.reasons import AreasUnread
@@ -31,16 +32,21 @@ class Surroundings:
         self._places = Places(app.ros, {name: app.site.border(name) for name in self._models})
         self._shapes = {name: from_above(model) for name, model in self._models.items()}
         self._areas: list[Body] = []
+        self._walls, self._walled = AreaWalls(app), list[Body]()
         self._records, self.roads = Records(app), Roads()
         if self._models:
             app.ros.poll_in_thread(PERIOD, self._places.take, "places")
 
-    def read(self) -> None:
-        """Read blocked areas and roads anew; while the database is away, those that were read last hold.
+    def read(self, here: Pose) -> None:
+        """Read areas, blocked ones and roads anew, for a way that begins here; what cannot be read holds as before.
 
         Raises:
             SubtaskFailed: BadRecord; or a record is older than it may be.
         """
+        try:
+            self._walled = self._walls.read(here)
+        except RosError as error:
+            self._app.log.warning("areas_unread", reason=error.reason)
         if not self._records.there():
             return
         try:
@@ -63,4 +69,4 @@ class Surroundings:
             if (place := self._places.place(name)) is not None
             for part in self._shapes[name].values()
         ]
-        return Ground((*found, *self._areas))
+        return Ground((*found, *self._areas, *self._walled))

@@ -72,7 +72,7 @@ class TrackServers:
             if (kept := self._guard.wait(goal)) is not None:
                 return Outcome.ABORTED, _result(action, kept, [])
             try:
-                self._around.read()
+                self._around.read(self._tracks.pose)
             except SubtaskFailed as error:
                 return Outcome.ABORTED, _result(action, error.reason, [])
             trip = self._tracks.begin(task(), self._around.ground())

@@ -27,6 +27,7 @@ from tms_proof.standstill import HEADING, ODOM, PLACE
 from tms_rc.area_file import AreaFile, Enabled
 from tms_rc.braking_file import BrakingFile
 from tms_rc.motion_goals import frame_of, places_of, way_of
+from tms_rc.place_watch import PlaceWatch
 from tms_rc.reasons import (
     AreasLate,
     AreasNotEnabled,
@@ -61,6 +62,7 @@ class AreaWatch:
         self._model, self._border = site.model_of(machine), site.border(machine)
         self._file, self._silhouette = AreaFile(site.state, machine), Silhouette(self._model)
         self._places = Places(app.ros, {machine: self._border})
+        self._shared = PlaceWatch(app)
         drive = self._model.drive
         gnss = site.file.machines[machine].fix
         self._fix = Fix(drive.turn_velocity if drive is not None else 0.0, rtk=gnss is not None)
@@ -117,7 +119,7 @@ class AreaWatch:
 
     def problem(self, motion: MotionAction, request: Any, joints: Mapping[str, float]) -> Reason | None:
         """Why a goal must not begin, from where the machine is now."""
-        guard = self._escape or self._guard
+        escape, guard = self._escape, self._guard
         if guard is None:
             return self._problem
         seen = self._now()
@@ -125,8 +127,10 @@ class AreaWatch:
             frame = frame_of(request)
             if frame:
                 return GoalNotInMap(frame)
-            return guard.may_drive(seen, joints, places, told=motion.field in TOLD)
-        return guard.may_work(seen, [joints, *way_of(request, self._model.turned(motion.field))])
+            if escape is not None:
+                return escape.may_drive(seen, joints, places, told=motion.field in TOLD)
+            return self._shared.judged(self._holding, seen, joints, places, told=motion.field in TOLD)
+        return (escape or guard).may_work(seen, [joints, *way_of(request, self._model.turned(motion.field))])
 
     # people
 
@@ -150,8 +154,9 @@ class AreaWatch:
         self._app.log.info("areas_enabled", set=areas.id, who=who)
 
     def _enabled(self, enabled: Enabled, guard: Guard) -> None:
+        self._shared.enable(enabled.areas)
         self.enabled, self._guard, self._problem = enabled, guard, None
-        self._end_escape()
+        self._escape = None
         target = f"{self._app.machine} {enabled.areas.id[:SHOWN]}"
         self._tell("enable_areas", target, enabled.who, enabled.at)  # at each start again: the audit may be new
 
@@ -170,17 +175,18 @@ class AreaWatch:
                 raise TmsError(EscapesAtRest(machine))
             if seen.unsure is not None:
                 raise TmsError(seen.unsure)
-            escape = Escape(guard.law, self._silhouette, self.speed.able)
+            escape = Escape(guard.law, self._silhouette)
             if escape.over(seen, gateway.watch.positions):
                 raise TmsError(NothingToEscape(machine))
             self._escape, self._escape_since = escape, unix_time()
-            self.speed.set("escape", SPEED)
         self._tell("escape", machine, who, self._escape_since)
         self._app.log.warning("escape", who=who)
 
-    def _end_escape(self) -> None:
-        self._escape = None
-        self.speed.set("escape", math.inf)
+    def _pace(self, seen: Seen) -> None:
+        """Limit the speed of the tracks: before an area that limits it, and on the way back."""
+        if (guard := self._guard) is not None:
+            self.speed.set("areas", guard.pace(seen, self._gateway.watch.positions))
+            self.speed.set("escape", math.inf if self._escape is None else SPEED)
 
     def _check_free(self, guard: Guard) -> None:
         active = self._gateway.active
@@ -203,7 +209,16 @@ class AreaWatch:
         self._enabled(found, self._made(found.areas))
 
     def _made(self, areas: AreaSet) -> Guard:
-        return Guard(Law(areas, self._app.machine, self._tracks), self._silhouette)
+        return self._guard_of(areas, self._shared.open)
+
+    def _guard_of(self, areas: AreaSet, held: frozenset[str]) -> Guard:
+        return Guard(Law(areas, self._app.machine, self._tracks, held, slow=self.speed.able), self._silhouette)
+
+    def _holding(self, held: frozenset[str]) -> Guard:
+        """The guard that counts for a holder of some places."""
+        guard = self._guard
+        assert guard is not None, "areas are enabled"
+        return guard if guard.law.held == held else self._guard_of(guard.law.areas, held)
 
     def _now(self) -> Seen:
         with self._fixing:
@@ -228,11 +243,26 @@ class AreaWatch:
         self._take_stops()
         if (escape := self._escape) is not None and escape.over(seen, self._gateway.watch.positions):
             self._escaped()
-        active, guard = self._gateway.active, self._escape or self._guard
+        self._pace(seen)
+        active, guard = self._gateway.active, self._guard
+        drives = active is not None and self._drives(active.number)
+        lease = None if guard is None else self._leases(guard, seen, drives)
+        escape, guard = self._escape, self._guard
         if active is not None and guard is not None:
             at = monotonic()
-            verdict = guard.look(seen, self._gateway.watch.positions, self._drives(active.number))
+            verdict = (escape or guard).look(seen, self._gateway.watch.positions, drives)
+            if lease is not None and escape is None and verdict.stop is None:
+                verdict = Verdict(hold=lease)
             self._verdict = at, active.number, verdict
+
+    def _leases(self, guard: Guard, seen: Seen, drives: bool) -> Reason | None:
+        """Why the tracks must be held for a lease; places that were got or given back count from now on."""
+        lease = self._shared.look(guard, self._gateway.watch.positions, seen, drives)
+        if self._shared.open != guard.law.held:
+            with self._enabling:
+                if self.enabled is not None:
+                    self._guard = self._made(self.enabled.areas)
+        return lease
 
     def _take_stops(self) -> None:
         while not self.stops.empty():
@@ -243,7 +273,7 @@ class AreaWatch:
 
     def _escaped(self) -> None:
         with self._enabling:
-            self._end_escape()
+            self._escape = None
         self._app.log.info("escape_over")
 
     def _learn(self, stop: Receipt) -> None:

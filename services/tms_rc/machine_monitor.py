@@ -19,9 +19,10 @@ from tms_proof.source import LABELS, SourceSample
 from tms_proof.standstill import HEADING, IMU, JOINTS, ODOM, PLACE, TURNING, StandStill
 from tms_rc.reasons import StrangeType
 from tms_reason.reason import Reason
-from tms_ros.node import Ros, node_of
+from tms_ros.node import Ros
 from tms_ros.topics import Arrival
 from tms_runtime.app import App
+from tms_runtime.graph import node_of
 
 DEPTH = 10  # messages of a source that may come between two beats
 VOICES = 0.25  # s between checks of who publishes

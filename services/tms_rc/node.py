@@ -79,7 +79,11 @@ def _serve(app: App, claim: Claim) -> None:
     watch_setup.begin(app, shell, gateway, servers, people)
     relayed_goals.watch(app, servers)
     app.ros.on_executor(lambda: permits.listen(app, shell))  # no callback may come before all of them exist
-    permit = Permit(app.ros, app.pulse, machine, "rc")
+    _stand_by_goals(app)
+    app.ready_when(state.unready)
+
+
+def _stand_by_goals(app: App) -> None:
+    permit = Permit(app.ros, app.pulse, app.machine, "rc")
     # Wait until the lease of a killed predecessor has run out: before, its loss would go unnoticed.
     app.ros.on_executor(lambda: app.ros.after(LEASE, lambda: permit.hold(GATEWAY)))
-    app.ready_when(state.unready)

@@ -17,8 +17,8 @@ from unique_identifier_msgs.msg import UUID
 
 from tms_config.clock import monotonic
 from tms_config.naming import process_of
+from tms_interfaces.generated import ActionType, F, G, R
 from tms_ros.goals import Outcome
-from tms_ros.interface_types import ActionType, F, G, R
 from tms_ros.loop import EventLoop
 from tms_ros.privates import SureActionClient
 from tms_ros.quality import SERVICE

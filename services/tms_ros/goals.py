@@ -3,8 +3,8 @@
 from collections.abc import Awaitable, Callable
 from enum import Enum
 
+from tms_interfaces.generated import G, R
 from tms_reason.reason import Reason
-from tms_ros.interface_types import G, R
 
 
 class Outcome(Enum):

@@ -7,7 +7,6 @@ Why it is built this way (all measured with the rclpy in use):
 """
 
 import threading
-from collections import deque
 from collections.abc import Awaitable, Callable
 from contextlib import AbstractContextManager, nullcontext
 from typing import Any
@@ -19,7 +18,6 @@ from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
 from rclpy.context import Context
 from rclpy.exceptions import InvalidHandle
-from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 from rclpy.task import Future
@@ -27,9 +25,8 @@ from rclpy.task import Future
 from tms_config.clock import monotonic, sleep
 from tms_reason.errors import RosError
 from tms_reason.reason import Reason
-from tms_ros.privates import TimedExecutor
+from tms_ros.executor import KeepingExecutor
 
-LONGEST_WAIT = 1.0  # s that the executor waits at most
 POLL = 0.02  # s between checks of the ROS graph, which has no cheap event in rclpy
 
 
@@ -53,14 +50,11 @@ class EventLoop:
             )
         self.group = ReentrantCallbackGroup()
         self._steady = Clock(clock_type=ClockType.STEADY_TIME)  # a node's own clock stands still when NTP sets it back
-        self._executor = TimedExecutor(context=self._context)
+        self._executor = KeepingExecutor(self._context)
         self._executor.add_node(self.node)
-        self._coming, self._starting = deque[Callable[[], None]](), deque[Callable[[], Awaitable[None]]]()
         self.failed = threading.Event()  # a thread of this node died of an exception: the whole process must end
         self.closing = False  # no message can be sent any more
         self._ends: list[Callable[[], None]] = []
-        # Fast DDS has lost a wake-up: once in an hour of a full PC, an executor without a timer waited for ever.
-        self.every(LONGEST_WAIT, lambda: None)
         self._thread = self.begin(self._spin, "ros")
 
     def busy_since(self) -> float | None:
@@ -96,8 +90,6 @@ class EventLoop:
     def _spin(self) -> None:
         try:
             self._executor.spin()
-        except ExternalShutdownException:
-            pass
         except InvalidHandle:  # on a busy PC, the node may be gone before the last callback has ended
             if not self.closing:
                 raise
@@ -120,17 +112,11 @@ class EventLoop:
         if threading.current_thread() is self._thread:
             step()
         else:
-            self._coming.append(step)
-            self._executor.create_task(lambda: self._coming.popleft()())  # rclpy runs the newest task first
+            self._executor.create_task(step)
 
     def start(self, step: Callable[[], Awaitable[None]]) -> None:
         """Run a coroutine function on the executor thread; it begins after the steps of earlier calls."""
-
-        async def oldest() -> None:
-            await self._starting.popleft()()
-
-        self._starting.append(step)
-        self._executor.create_task(oldest)
+        self._executor.create_task(step)
 
     def create_future(self) -> Future:
         """A result that coroutines on the executor thread await; set it there, see `on_executor`."""

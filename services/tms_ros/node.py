@@ -2,11 +2,10 @@
 
 import threading
 from contextlib import AbstractContextManager
-from typing import Any
 
 from tms_config.clock import sleep
+from tms_interfaces.generated import ActionType, F, G, R
 from tms_ros.client import AnyPeer, Peer
-from tms_ros.interface_types import ActionType, F, G, R
 from tms_ros.loop import EventLoop
 from tms_ros.server import ActionServers
 from tms_ros.services import Services
@@ -39,7 +38,6 @@ class Ros:
         self.publisher, self.subscribe, self.subscribe_raw = topics.publisher, topics.subscribe, topics.subscribe_raw
         self.delivered, self.sample, self.sample_arrivals = topics.delivered, topics.sample, topics.sample_arrivals
         self.lease_publisher, self.lease_subscribe = topics.lease_publisher, topics.lease_subscribe
-        self.fading_publisher = topics.fading_publisher
 
         self.offer, self.offer_slow, self.prepare = services.offer, services.offer_slow, services.prepare
         self.call, self.call_async = services.call, services.call_async
@@ -70,8 +68,3 @@ class Ros:
             if name not in self._peers:
                 self._peers[name] = Peer(self.loop, action_type, name)
             return self._peers[name]
-
-
-def node_of(endpoint: Any) -> str:
-    """Full name of the node that an endpoint of rclpy's graph belongs to."""
-    return f"{endpoint.node_namespace.rstrip('/')}/{endpoint.node_name}"

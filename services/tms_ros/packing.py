@@ -2,7 +2,7 @@
 
 from rclpy.serialization import deserialize_message, serialize_message
 
-from tms_ros.interface_types import M, Message
+from tms_interfaces.generated import M, Message
 
 
 def pack(message: Message) -> bytes:

@@ -1,4 +1,4 @@
-"""All uses of rclpy's private parts: tests/ros/test_privates.py checks a new release of rclpy for them."""
+"""All uses of rclpy's private parts, with executor.py; tests/ros/test_privates.py checks a new release for them."""
 
 import warnings
 from collections.abc import Callable
@@ -8,7 +8,6 @@ from rclpy.action import ActionClient, ActionServer
 from rclpy.action.client import ClientGoalHandle
 from rclpy.callback_groups import CallbackGroup
 from rclpy.exceptions import InvalidHandle
-from rclpy.executors import SingleThreadedExecutor
 from unique_identifier_msgs.msg import UUID
 
 from tms_config.clock import monotonic, unix_ns
@@ -55,33 +54,12 @@ def take(subscription: Any) -> tuple[Any, float, int] | None:
     return message, monotonic() - waited, way["publication_sequence_number"]
 
 
-class TimedExecutor(SingleThreadedExecutor):  # type: ignore[misc]
-    """An executor that knows when its present callback began."""
-
-    busy_since: float | None = None  # monotonic; None while it waits
-
-    def wait_for_ready_callbacks(self, *args: Any, **settings: Any) -> Any:
-        """Wait, and note when the wait is over."""
-        self.busy_since = None
-        found = super().wait_for_ready_callbacks(*args, **settings)
-        self.busy_since = monotonic()
-        return found
-
-
 class Asleep(CallbackGroup):  # type: ignore[misc]
     """The group of subscriptions that must not wake the executor."""
 
     def can_execute(self, entity: Any) -> bool:
         """Never."""
         return False
-
-    def beginning_execution(self, entity: Any) -> bool:
-        """Never."""
-        return False
-
-    def ending_execution(self, entity: Any) -> None:
-        """Nothing of this group is executed."""
-        raise AssertionError("nothing of this group is executed")
 
 
 class NamingActionServer(ActionServer):  # type: ignore[misc]

@@ -1,7 +1,5 @@
 """Qualities of service, with the reasons for them."""
 
-from collections.abc import Sequence
-
 from rclpy.duration import Duration
 from rclpy.qos import (
     DurabilityPolicy,
@@ -31,18 +29,6 @@ def topic(depth: int, latched: bool, best_effort: bool = False, lives: float = 0
     reliability = ReliabilityPolicy.BEST_EFFORT if best_effort else ReliabilityPolicy.RELIABLE
     age = Duration(seconds=lives)
     return QoSProfile(depth=depth, durability=durability, reliability=reliability, lifespan=age)
-
-
-def as_offered(offered: Sequence[QoSProfile]) -> QoSProfile:
-    """For topics that this system did not define.
-
-    A reliable reader would not receive from a best-effort writer, and a volatile reader no earlier messages.
-    """
-    latched = bool(offered) and all(one.durability == DurabilityPolicy.TRANSIENT_LOCAL for one in offered)
-    found = topic(10, latched)
-    if any(one.reliability == ReliabilityPolicy.BEST_EFFORT for one in offered):
-        found.reliability = ReliabilityPolicy.BEST_EFFORT
-    return found
 
 
 def misfit(writer: QoSProfile, reader: QoSProfile) -> str:

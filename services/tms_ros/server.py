@@ -15,18 +15,17 @@ from structlog.contextvars import bind_contextvars
 
 from tms_config.clock import monotonic, sleep
 from tms_decision.reasons import ProcessLost
+from tms_interfaces.generated import ActionType, F, G, R
 from tms_reason.reason import Reason
 from tms_reason.wire import to_line
 from tms_ros.goals import Accept, Ended, Outcome
-from tms_ros.interface_types import ActionType, F, G, R
-from tms_ros.loop import EventLoop
+from tms_ros.loop import POLL, EventLoop
 from tms_ros.privates import NamingActionServer
 from tms_ros.quality import SERVICE
 from tms_ros.reasons import BeingStopped, StoppedMeanwhile
 from tms_ros.topics import Topics
 
 RESULT_KEPT = 10  # s that a server keeps a result; every status message lists all kept goals
-POLL = 0.02  # s
 
 GOALS = Counter("tms_action_goals_total", "Goals served, by action and outcome", ["action", "outcome"])
 SECONDS = Histogram(

@@ -10,10 +10,10 @@ from rclpy.task import Future
 from tms_config.clock import monotonic
 from tms_config.naming import process_of
 from tms_decision.reasons import ProcessLost
+from tms_interfaces.generated import Req, Res, ServiceType
 from tms_reason.errors import RosError
 from tms_reason.wire import to_line
 from tms_ros import quality
-from tms_ros.interface_types import Req, Res, ServiceType
 from tms_ros.loop import POLL, EventLoop
 from tms_ros.privates import send_surely
 from tms_ros.reasons import BadServiceName, Internal, LostMeanwhile, NoAnswer, NoServer
@@ -34,11 +34,8 @@ class Services:
         service_type: ServiceType[Req, Res],
         name: str,
         handler: Callable[[Req, Res], Res | Awaitable[Res]],
-    ) -> None:
+    ) -> Any:
         """Serve a service; the handler runs on the executor thread and must be quick, or be a coroutine function."""
-        self._offered(service_type, name, handler)
-
-    def _offered(self, service_type: ServiceType[Req, Res], name: str, handler: Callable[..., Any]) -> Any:
         service = self._loop.node.create_service(
             service_type, name, handler, qos_profile=quality.SERVICE, callback_group=self._loop.group
         )
@@ -63,7 +60,7 @@ class Services:
             threading.Thread(target=work, name=name, daemon=True).start()
             return await done
 
-        return self._offered(service_type, name, answer)
+        return self.offer(service_type, name, answer)
 
     def _service(self, service_type: ServiceType[Req, Res], name: str) -> Any:
         key = (service_type, name)

@@ -14,8 +14,8 @@ from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallba
 from rclpy.exceptions import InvalidHandle
 from rclpy.qos import QoSProfile
 
+from tms_interfaces.generated import M, Message, Publisher
 from tms_ros import quality
-from tms_ros.interface_types import M, Message, Publisher
 from tms_ros.loop import EventLoop
 from tms_ros.privates import Asleep, take
 
@@ -35,9 +35,11 @@ class Topics:
     def __init__(self, loop: EventLoop) -> None:
         self._loop = loop
 
-    def publisher(self, message_type: type[M], topic: str, depth: int = 10, latched: bool = False) -> Publisher[M]:
-        """A reliable publisher; `latched`: subscribers that come later get the last message."""
-        return self._published(message_type, topic, quality.topic(depth, latched))
+    def publisher(
+        self, message_type: type[M], topic: str, depth: int = 10, latched: bool = False, lives: float = 0.0
+    ) -> Publisher[M]:
+        """A reliable publisher; `latched`: later subscribers get the last message, if not older than `lives` [s]."""
+        return self._published(message_type, topic, quality.topic(depth, latched, lives=lives))
 
     def _published(self, message_type: type[M], topic: str, qos: QoSProfile) -> Publisher[M]:
         quiet = PublisherEventCallbacks(use_default_callbacks=False)
@@ -82,9 +84,7 @@ class Topics:
 
         def all_that_wait(message: M) -> None:
             on_message(message)
-            if subscription is None:  # this message came before the assignment below
-                return
-            for _ in range(depth - 1):
+            for _ in range(depth - 1 if subscription else 0):  # a message may come before the assignment below
                 try:
                     waiting = take(subscription)
                 except InvalidHandle:  # `on_message` has ended the subscription
@@ -108,7 +108,8 @@ class Topics:
         self, message_type: type[M], topic: str, depth: int = 1, best_effort: bool = True
     ) -> Callable[[], list[Arrival[M]]]:
         """As `sample`, with each message's reception time and number; `best_effort`: lost ones are not sent again."""
-        reader = self._subscribed(message_type, topic, _unheard, quality.topic(depth, False, best_effort), Asleep())
+        qos = quality.topic(depth, False, best_effort)
+        reader = self._subscribed(message_type, topic, lambda _: None, qos, Asleep())
 
         def take_new() -> list[Arrival[M]]:
             found: list[Arrival[M]] = []
@@ -124,10 +125,6 @@ class Topics:
         """Call `on_message` with each serialised message."""
         return self._subscribed(message_type, topic, on_message, qos, raw=True)
 
-    def fading_publisher(self, message_type: type[M], topic: str, seconds: float) -> Publisher[M]:
-        """A latched publisher whose message is kept for `seconds` only."""
-        return self._published(message_type, topic, quality.topic(1, True, lives=seconds))
-
     def lease_publisher(self, message_type: type[M], topic: str, seconds: float) -> Publisher[M]:
         """A latched publisher; DDS notifies its readers when it was not asserted for `seconds`."""
         return self._published(message_type, topic, quality.lease(seconds))
@@ -142,7 +139,3 @@ class Topics:
     ) -> Any:
         """Call `on_message` with messages and `on_liveliness` with DDS's reports on the assertions of publishers."""
         return self._subscribed(message_type, topic, on_message, quality.lease(seconds), liveliness=on_liveliness)
-
-
-def _unheard(message: Message) -> None:
-    raise AssertionError("messages of a sampled topic are taken, not received by a callback")

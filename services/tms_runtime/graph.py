@@ -3,7 +3,7 @@
 from itertools import product
 from typing import Any
 
-from tms_ros.node import Ros, node_of
+from tms_ros.node import Ros
 from tms_ros.quality import misfit
 from tms_runtime import metrics
 from tms_runtime.log import Logger
@@ -83,3 +83,8 @@ def _mismatch(writer: Any, reader: Any) -> str:
     if writer.topic_type != reader.topic_type:
         return f"{writer.topic_type} is not {reader.topic_type}"
     return misfit(writer.qos_profile, reader.qos_profile)
+
+
+def node_of(endpoint: Any) -> str:
+    """Full name of the node that an endpoint of rclpy's graph belongs to."""
+    return f"{endpoint.node_namespace.rstrip('/')}/{endpoint.node_name}"

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from typing import Any
 
-from tms_ros.interface_types import M
+from tms_interfaces.generated import M
 from tms_ros.node import Ros
 
 ASSERTED = 0.1  # s, waited twice, for DDS to report a publisher as asserted after its message

@@ -2,8 +2,8 @@
 
 import importlib
 
+from tms_interfaces.generated import Message
 from tms_reason.validation import Wrong
-from tms_ros.interface_types import Message
 from tms_sensors.reasons import NoMessageType
 
 

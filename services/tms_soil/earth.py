@@ -34,6 +34,7 @@ class Body:
         tools = {"digger": model.bucket, "hauler": model.vessel, "grader": model.blade}
         self._link = {part: tool.link for part, tool in tools.items() if tool}
         self._links = Links(model, self._link.values())
+        self._known: tuple[Mapping[str, float], Matrix, dict[str, Matrix]] | None = None  # see `at`
         self.time = -math.inf  # s, of its last report
         self.places: dict[str, Matrix] = {}  # part -> its link in map, at the last report
         self.running: list[Bounds] = []  # where soil that it moved still runs
@@ -52,12 +53,18 @@ class Body:
         return part.resistance if part else 0.0
 
     def at(self, angles: Mapping[str, float], base: Matrix) -> dict[str, Matrix]:
-        """The links of its parts in map at joint angles [rad], with base_link at `base`."""
+        """The links of its parts in map at joint angles [rad], with base_link at `base`.
+
+        A machine that stands tells the same over and over; one with the same `base`, which nobody changes, is known.
+        """
         if not self._link:
             return {"base": base}
-        pose = np.array([[angles.get(joint, 0.0) for joint in self._links.names]])
-        links = self._links.places(pose)
-        return {"base": base} | {part: base @ links[link][0] for part, link in self._link.items()}
+        if self._known is None or self._known[1] is not base or self._known[0] != angles:
+            pose = np.array([[angles.get(joint, 0.0) for joint in self._links.names]])
+            links = self._links.places(pose)
+            found = {"base": base} | {part: base @ links[link][0] for part, link in self._link.items()}
+            self._known = dict(angles), base, found
+        return self._known[2]
 
     def step(
         self, before: Mapping[str, Matrix], after: Mapping[str, Matrix], seconds: float, haulers: Sequence[Hauler]
@@ -93,7 +100,7 @@ class Earth:
         body = self.bodies[machine]
         now, seconds = body.at(angles, base), time - body.time
         before = body.places if 0 <= seconds <= self._gap and _near(body.places, now, seconds) else now
-        still = all(np.array_equal(before[part], now[part]) for part in now)
+        still = before is now or all(np.array_equal(before[part], now[part]) for part in now)
         body.places, body.time = now, time
         if still and body.rests and not body.running:
             return []

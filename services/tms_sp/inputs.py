@@ -7,10 +7,10 @@ from prometheus_client import Counter, Gauge
 from tms_msg_sp.msg import InputState
 
 from tms_config.clock import monotonic, unix_time
+from tms_interfaces.generated import Message
 from tms_machine.sensing import Input
 from tms_reason.reason import Reason
 from tms_reason.wire import to_line
-from tms_ros.interface_types import Message
 from tms_sp.arrivals import SILENT_PERIODS, Arrivals
 from tms_sp.clock import SourceClock
 from tms_sp.mapping import Key, MappedValues, Mapping, MessageRefused

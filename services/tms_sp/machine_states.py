@@ -11,8 +11,8 @@ from tms_msg_db.msg import MachineState
 from tms_msg_db.srv import WriteMachineStates
 
 from tms_config.models import Border
+from tms_interfaces.generated import Message
 from tms_machine.places import POSES, pose_of
-from tms_ros.interface_types import Message
 from tms_runtime.app import App
 
 

@@ -3,6 +3,7 @@
 import threading
 from collections.abc import Iterator
 
+from tms_places.waits import Order
 from tms_reason.errors import TaskError
 from tms_ts.reasons import MachineBusy
 from tms_ts.run import Run
@@ -65,6 +66,10 @@ class ActiveRuns:
         """The machines that a run holds."""
         with self._lock:
             return [machine for machine, holder in self._holders.items() if holder == run.facts.run_id]
+
+    def orders(self) -> dict[str, set[Order]]:
+        """Which places the machines of active runs hold while they take others."""
+        return {machine: some for run in self for machine, some in run.facts.orders.items()}
 
     def writes(self, record: str, field: str) -> bool:
         """Whether an active run writes a shared value."""

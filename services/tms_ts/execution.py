@@ -30,6 +30,8 @@ from tms_ts.interrupted_run import Header, InterruptedRun
 from tms_ts.journal import Journal
 from tms_ts.machines import Identity, Machines
 from tms_ts.numbers import Numbers, no_disk
+from tms_ts.place_check import orders_of
+from tms_ts.place_requests import PlaceRequests, RunPlaces
 from tms_ts.preflight import Findings, machines_of, processes_of, records_of
 from tms_ts.questions import Clicks
 from tms_ts.reasons import Preflight, PreflightMore, Resumed
@@ -72,6 +74,7 @@ class Parts:
     runs: ActiveRuns
     publisher: RunsPublisher
     check: TaskCheck
+    places: PlaceRequests
 
 
 class Execution:
@@ -130,6 +133,8 @@ class Execution:
             run.refuse(Internal(parts.app.process.full))
         if run.flags is not None:
             run.flags.close()
+        if run.places is not None:
+            run.places.close(run.facts.machines)
         parts.runs.remove(run)
         parts.publisher.changed()
         run.ended.set()
@@ -155,7 +160,8 @@ class Execution:
         machines = Machines(self._ros, site, parts.hosts, gateways, run.wake.set, run.log_event, identity)
         run.flags = Flags(self._ros, parts.shared, run.wake.set, facts.run_id)
         clicks = Clicks(parts.publisher.questions, facts.run_id, run.wake.set, run.log_event)
-        tree = bt.load(xml, world=World(machines, run.flags, clicks), templates=templates)
+        run.places = RunPlaces(parts.places, facts.run_id, run.wake.set)
+        tree = bt.load(xml, world=World(machines, run.flags, clicks, run.places), templates=templates)
         replay.beside = tree.beside
         self._begin(run, tree, xml, resumed=past is not None)
         parts.check.refuse_latched(facts.machines)
@@ -178,6 +184,7 @@ class Execution:
         """Enter the run into the history, check it, and take its machines."""
         facts = run.facts
         facts.machines, facts.records = machines_of(tree), records_of(tree)
+        facts.orders = orders_of(tree)
         facts.writes = {(value.record, value.field) for value in tree.shared_values() if value.writes}
         started = (facts.started.sec, facts.started.nanosec)
         known = (facts.run_id, facts.number, facts.task_id, facts.description, facts.machines, xml, started)

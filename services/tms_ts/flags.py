@@ -5,11 +5,11 @@ from typing import Any, Generic, TypeVar
 
 from tms_msg_db.srv import ChangeArray, FindRecord, GetParameter, SetParameter
 
+from tms_interfaces.generated import Reply, Req, ServiceType
 from tms_machine.reasons import NoDatabase
 from tms_machine.values import from_parameters, to_parameters
 from tms_reason.reason import Reason
 from tms_reason.wire import refusal
-from tms_ros.interface_types import Reply, Req, ServiceType
 from tms_ros.node import Ros
 from tms_ts.reasons import NoRecordField
 from tms_ts.shared_records import SharedRecords

@@ -21,6 +21,7 @@ from tms_runtime.app import App
 from tms_ts.interrupted_run import Header, InterruptedRun, Over
 from tms_ts.journal import Journal
 from tms_ts.machine_stops import reported_by
+from tms_ts.place_requests import PlaceRequests
 from tms_ts.reasons import (
     GivenUp,
     NotInterrupted,
@@ -39,8 +40,8 @@ RECEIPTS = 1000  # every gateway keeps its last 20 for late comers
 class Interrupted:
     """Closes the runs that the checkpoints of this PC show as open, except those that are active again."""
 
-    def __init__(self, app: App, journal: Journal, records: Records) -> None:
-        self._app, self._journal, self._records = app, journal, records
+    def __init__(self, app: App, journal: Journal, records: Records, places: PlaceRequests) -> None:
+        self._app, self._journal, self._records, self._places = app, journal, records, places
         self._active: set[str] = set()
         self._receipts: deque[Stop] = deque(maxlen=RECEIPTS)
         self._lock = threading.Lock()  # guards the receipts; the executor thread takes it: held for moments only
@@ -101,6 +102,7 @@ class Interrupted:
         self._journal.put(Event(run_id=header.run_id, number=over.event, stamp=stamp, kind="run", text=text))
         self._journal.put(_row(header, over.outcome, why, stamp))
         self._records.open(header.run_id).remove()
+        self._places.free_all(header.run_id, header.machines)
 
     # what a person does about it
 

@@ -19,6 +19,7 @@ from tms_ts.interrupted import Interrupted
 from tms_ts.journal import Journal
 from tms_ts.numbers import Numbers
 from tms_ts.permissions import Permissions
+from tms_ts.place_requests import PlaceRequests
 from tms_ts.reasons import NoQuestion, NoRun, SchedulerStopped
 from tms_ts.run_checkpoint import Records
 from tms_ts.runs_publisher import RunsPublisher
@@ -50,15 +51,17 @@ def _parts(app: App) -> Parts:
     hosts, disk = Hosts(ros), GroupCommit(app.log)
     journal, records = Journal(ros, app.log, disk, site.state), Records(site.state, disk)
     records.check()
-    interrupted = Interrupted(app, journal, records)
+    places = PlaceRequests(app)
+    interrupted = Interrupted(app, journal, records, places)
     gateways = Gateways(app, interrupted.receipt)
     monitors = Monitors(app.log, site.file.groot.bind, site.file.ports.groot)
     numbers, shared = Numbers(site.state, disk), SharedRecords(ros)
     runs = ActiveRuns()
-    check, publisher = TaskCheck(app, runs, gateways), RunsPublisher(ros, runs)
+    check, publisher = TaskCheck(app, runs, gateways, places.site), RunsPublisher(ros, runs)
     return Parts(
-        app, disk, journal, records, numbers, shared, hosts, gateways, monitors, interrupted, runs, publisher, check
-    )
+        app, disk, journal, records, numbers, shared, hosts, gateways, monitors, interrupted, runs, publisher, check,
+        places,
+    )  # fmt: skip
 
 
 class Scheduler:

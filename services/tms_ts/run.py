@@ -30,6 +30,7 @@ from tms_ts.journal import Journal
 from tms_ts.machine_stops import reported_by
 from tms_ts.machines import Machines
 from tms_ts.node_report import NodeReport
+from tms_ts.place_requests import RunPlaces
 from tms_ts.reasons import TreeOf
 from tms_ts.run_checkpoint import RunCheckpoint
 from tms_ts.run_states import STATES, entered
@@ -67,6 +68,7 @@ class Run:
         self._ros, self._journal, self._log, self._goal = ros, journal, log, goal
         self.record = record
         self.flags: Flags | None = None  # the flags of its tree
+        self.places: RunPlaces | None = None  # and the shared places
         self.number = 0  # number of the last event
         self._numbering = threading.Lock()  # the executor thread logs events, too
         self.nodes = NodeReport(facts, lambda node, what: self.log_event("node", node, what), changed)

@@ -5,8 +5,10 @@ from tms_msg_db.srv import GetTask, GetTemplate
 from tms_msg_rp.srv import CheckMotion
 from tms_msg_ts.srv import CheckTask
 
+from tms_config.clock import monotonic, sleep
 from tms_decision.reasons import MachineLatched
 from tms_kit.rehearsal import service_of
+from tms_kit.site_places import SitePlaces
 from tms_reason.errors import TaskError, TmsError
 from tms_reason.reason import Reason
 from tms_reason.wire import refusal, to_line
@@ -14,9 +16,10 @@ from tms_runtime.app import App
 from tms_ts import bt
 from tms_ts.active_runs import ActiveRuns
 from tms_ts.gateways import Gateways
+from tms_ts.place_check import check_places, leaves_of
 from tms_ts.preflight import Findings, at, preflight
 from tms_ts.reasons import MachineBusy
-from tms_ts.surroundings import PreflightContext, SensingInputs
+from tms_ts.surroundings import CHECK_PERIOD, DISCOVERY_LIMIT, PreflightContext, SensingInputs
 
 DB_LIMIT = 5.0  # s
 
@@ -24,8 +27,8 @@ DB_LIMIT = 5.0  # s
 class TaskCheck:
     """Reads tasks from the database and checks them against the site as it is now."""
 
-    def __init__(self, app: App, runs: ActiveRuns, gateways: Gateways) -> None:
-        self._app, self._runs, self._gateways = app, runs, gateways
+    def __init__(self, app: App, runs: ActiveRuns, gateways: Gateways, places: SitePlaces) -> None:
+        self._app, self._runs, self._gateways, self._places = app, runs, gateways, places
         self._sensing = SensingInputs(app)
         for machine in app.site.file.machines:
             if app.site.model_of(machine).planner is not None:
@@ -92,7 +95,20 @@ class TaskCheck:
     def _preflight(self, tree: bt.Tree, present: bool) -> Findings:
         """`present`: also report why machines may not move now; a run is refused for that later."""
         problem = self._problem if present else _no_problem
-        return preflight(tree, self._app.site, PreflightContext(self._app, self._sensing, problem, self._runs.writes))
+        site = self._app.site
+        found = preflight(tree, site, PreflightContext(self._app, self._sensing, problem, self._runs.writes))
+        if leaves_of(tree):
+            about = check_places(tree, site, self._known_places(), self._runs.orders())
+            found.errors += about.errors
+            found.warnings += about.warnings
+        return found
+
+    def _known_places(self) -> tuple[str, ...]:
+        """The places of the site; waits a moment for their keeper, which this process may have found just now."""
+        until = monotonic() + DISCOVERY_LIMIT
+        while (names := self._places.names) is None and monotonic() < until:
+            sleep(CHECK_PERIOD)
+        return names or ()
 
     def _problem(self, machine: str) -> Reason | None:
         holder = self._runs.holder(machine)

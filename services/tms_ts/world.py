@@ -82,6 +82,22 @@ class Clicks(Protocol):
     def withdraw(self, question: Pending[bool]) -> None: ...
 
 
+class SharedPlaces(Protocol):
+    """Release areas, which one machine holds at a time."""
+
+    def hold(self, machine: str, place: str) -> Pending[None]:
+        """Want a place for a machine; answered once the keeper has noted it."""
+        ...
+
+    def free(self, machine: str, place: str) -> Pending[None]:
+        """Want it no more."""
+        ...
+
+    def waits(self, machine: str, place: str) -> Reason | None:
+        """Why a machine that wants a place must not go there yet; None: it holds it."""
+        ...
+
+
 @dataclass(slots=True)
 class World:
     """Everything outside the tree that its nodes use."""
@@ -89,4 +105,5 @@ class World:
     machines: Machines
     flags: SharedFlags
     clicks: Clicks
+    places: SharedPlaces
     clock: Callable[[], float] = monotonic  # s

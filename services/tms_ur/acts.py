@@ -1,4 +1,4 @@
-"""Acts of persons that gateways tell of go into the audit, each once, whoever was away when it was done.
+"""Acts of persons that gateways and tms:db tell of go into the audit, each once, whoever was away when it was done.
 
 `<state>/audit.acts` holds which were noted. A crash between the entry and this file may give an act a second entry;
 none is lost while its gateway tells of it.
@@ -21,7 +21,8 @@ if TYPE_CHECKING:
 DEPTH = 20  # acts that a gateway still tells of
 REMEMBERED = 100  # acts of one machine that are known to be noted: more than its gateway tells of
 KEPT_LIMIT = 30.0  # s that the disk may take
-KINDS = ("enable_areas", "escape")
+KINDS = ("enable_areas", "escape", "revoke_place")
+KEEPER = "tms:db"  # of shared places
 log = structlog.stdlib.get_logger(__name__)
 
 Stamp = tuple[int, int]  # s, ns
@@ -35,24 +36,24 @@ class Acts:
         self._noted = _read(file)
         self._new: queue.SimpleQueue[tuple[str, Event]] = queue.SimpleQueue()
         for machine in machines:
-            self._listen(ros, machine)
+            self._listen(ros, machine, f"/{machine}/rc/acts")
+        self._listen(ros, KEEPER, "/tms/places/acts")
         ros.begin(self._work, "acts")
 
-    def _listen(self, ros: Ros, machine: str) -> None:
-        ros.subscribe(
-            Event, f"/{machine}/rc/acts", lambda act: self._new.put((machine, act)), depth=DEPTH, latched=True
-        )
+    def _listen(self, ros: Ros, source: str, topic: str) -> None:
+        ros.subscribe(Event, topic, lambda act: self._new.put((source, act)), depth=DEPTH, latched=True)
 
     def _work(self) -> None:
         while True:
             self.note(*self._new.get())
 
-    def note(self, machine: str, act: Event) -> None:
+    def note(self, source: str, act: Event) -> None:
         """Note an act of a known kind, unless that was done before; in a thread that may wait."""
-        known, stamp = self._noted.setdefault(machine, []), (act.stamp.sec, act.stamp.nanosec)
+        known, stamp = self._noted.setdefault(source, []), (act.stamp.sec, act.stamp.nanosec)
         if act.kind not in KINDS or stamp in known:
             return
-        if not self._audit.put(act.text, f"{machine}:rc", act.kind, act.node).wait(KEPT_LIMIT):
+        where = source if source == KEEPER else f"{source}:rc"
+        if not self._audit.put(act.text, where, act.kind, act.node).wait(KEPT_LIMIT):
             log.warning("audit_late", what=act.kind, reason="it is in the log, and noted when it is told again")
             return
         known.append(stamp)

@@ -3,6 +3,7 @@
 import json
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
+from functools import cache
 from http import HTTPStatus
 from pathlib import Path as File
 from typing import TYPE_CHECKING
@@ -73,12 +74,18 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
 
 
 def _describe(app: FastAPI) -> None:
-    """Serve `/openapi.json`, which is made once: any client may ask for it, as often as it likes."""
-    text = json.dumps(app.openapi(), ensure_ascii=False, separators=(",", ":"))
+    """Serve `/openapi.json`, which is made once: any client may ask for it, as often as it likes.
+
+    At the first request, in a thread: it takes as long as to make all the rest of the application.
+    """
+
+    @cache
+    def text() -> str:
+        return json.dumps(app.openapi(), ensure_ascii=False, separators=(",", ":"))
 
     @app.get("/openapi.json", include_in_schema=False)
-    async def document() -> Response:
-        return Response(text, media_type="application/json")
+    def document() -> Response:
+        return Response(text(), media_type="application/json")
 
 
 # errors

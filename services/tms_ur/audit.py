@@ -19,10 +19,10 @@ from tms_msg_db.msg import Event
 from tms_msg_db.srv import ListEvents, WriteJournal
 
 from tms_config.clock import unix_ns
+from tms_interfaces.generated import Reply, Req, ServiceType
 from tms_machine.values import from_parameters, to_parameters
 from tms_reason import wire
 from tms_reason.errors import TmsError
-from tms_ros.interface_types import Reply, Req, ServiceType
 from tms_ros.node import Ros
 from tms_ur.audit_chain import RUN, AuditEntry, ChainHead, Note, entry, highest, tied
 from tms_ur.audit_ledger import Ledger, LedgerFull, opened

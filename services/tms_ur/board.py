@@ -4,9 +4,11 @@ import threading
 from collections.abc import Callable, Iterable
 
 from tms_config.clock import monotonic, utc_now
-from tms_ur.models import ActiveRun, Host, Machine, Place, Process, Question, Scheduler, State
+from tms_ur.models import ActiveRun, Host, Machine, Place, Process, Question, Scheduler
+from tms_ur.place_models import SharedPlaces
 from tms_ur.reason_view import view
 from tms_ur.reasons import MachineSilent, MachineUnheard
+from tms_ur.state_models import State
 from tms_ur.watch_models import SeenBy, Watched
 
 MACHINE_SILENT = 2.0  # s, four periods of a machine's gateway
@@ -24,6 +26,7 @@ class Board:
         self._runs: list[ActiveRun] = []
         self._questions: list[Question] = []
         self._places: dict[str, tuple[Place, float]] = {}
+        self._shared = SharedPlaces()
         self._watched: dict[str, Watched] = {}
         self._seen: list[SeenBy] = []
         self._runs_at: float | None = None
@@ -72,6 +75,12 @@ class Board:
         if changed:
             self._publish()
 
+    def put_shared(self, shared: SharedPlaces) -> None:
+        """Take all shared places."""
+        with self._lock:
+            self._shared = shared
+        self._publish()
+
     def put_host(self, host: Host) -> None:
         """Take all processes of one PC; its agent publishes them at every change, and every 2 s without one."""
         with self._lock:
@@ -112,6 +121,7 @@ class Board:
                 runs=self._runs,
                 questions=self._questions,
                 hosts=[_host(host, now - at) for _, (host, at) in sorted(self._hosts.items())],
+                shared=self._shared,
             )
 
     def _publish(self) -> None:

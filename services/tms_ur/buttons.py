@@ -18,7 +18,8 @@ from std_msgs.msg import String
 from tms_config.clock import monotonic
 from tms_reason.errors import TmsError
 from tms_reason.reason import Reason, Several
-from tms_ros.node import Ros, node_of
+from tms_ros.node import Ros
+from tms_runtime.graph import node_of
 from tms_ur.reasons import NoTaskSequence
 
 if TYPE_CHECKING:

@@ -21,8 +21,9 @@ from tms_ur.access import Person
 from tms_ur.command_models import AnswerGiven, Nothing, RearmAsked, StartRun, StopAsked, TaskGiven, TemplateGiven
 from tms_ur.data_models import FieldGiven, RecordGiven
 from tms_ur.models import Added, AddedTemplate, Rearmed, Receipt, RunAsked
+from tms_ur.place_models import Revoked
 from tms_ur.problems import Admin, Operator, Viewer, problems
-from tms_ur.reading import MachineName, ProcessName, RunId, TaskId
+from tms_ur.reading import MachineName, PlaceName, ProcessName, RunId, TaskId
 from tms_ur.reasons import BadValue, IntTooLong, NotFinite, NotOfType, NotUnicode, Starting
 from tms_ur.security import source
 
@@ -44,6 +45,7 @@ def add(app: FastAPI, client: "SiteClient", audit: "Audit", site: Site) -> None:
     _runs(app, client, note)
     _machines(app, client, note, site)
     _stored(app, client, note)
+    _places(app, client, note)
     _processes(app, client, note)
 
 
@@ -204,6 +206,13 @@ def _fits(kind: str, value: Any) -> bool:
     except (OverflowError, UnicodeEncodeError):
         return False
     return kind != "int" or -(2**63) <= value < 2**63
+
+
+def _places(app: FastAPI, client: "SiteClient", note: _Note) -> None:
+    @app.post("/api/places/{name}/revoke", summary="Take a shared place from its holder", responses=ANSWERS)
+    def revoke(request: Request, name: PlaceName, _: Nothing, person: Operator) -> Revoked:
+        who = note(request, person, "revoke_place_asked", name)
+        return Revoked(place=name, holder=client.shared.revoke(name, who))
 
 
 def _processes(app: FastAPI, client: "SiteClient", note: _Note) -> None:

@@ -5,6 +5,7 @@ from typing import Any
 
 from builtin_interfaces.msg import Time
 from rcl_interfaces.msg import ParameterType
+from tms_msg_areas import msg as areas
 from tms_msg_db import msg as db
 from tms_msg_host import msg as host
 from tms_msg_rc import msg as rc
@@ -20,6 +21,7 @@ from tms_reason.units import unit
 from tms_ur.data_models import Change, Record, SensingInput
 from tms_ur.models import ActiveRun, Event, Joint, Machine, Process, Question, Receipt, Run, Template
 from tms_ur.models import MachineState as Shown
+from tms_ur.place_models import PlaceRequest, PlaceState, SharedPlace, SharedPlaces
 from tms_ur.reason_view import ReasonView, of_line, view
 
 NEVER = 1e8  # s, a larger age means that nothing was received yet
@@ -30,6 +32,29 @@ TYPES = {
     ParameterType.PARAMETER_DOUBLE_ARRAY: "double[]", ParameterType.PARAMETER_STRING_ARRAY: "string[]",
     ParameterType.PARAMETER_BYTE_ARRAY: "document",
 }  # fmt: skip
+
+
+PLACE_STATES: tuple[PlaceState, ...] = (
+    "free",
+    "granted",
+    "held",
+    "leaving",
+    "revoked",
+)  # by number
+
+
+def shared_places(told: areas.Places) -> SharedPlaces:
+    """All shared places."""
+    alarms = list(filter(None, map(of_line, told.alarms)))
+    return SharedPlaces(places=list(map(_shared_place, told.places)), alarms=alarms)
+
+
+def _shared_place(told: areas.Place) -> SharedPlace:
+    queue = [PlaceRequest(machine=one.machine, run=one.run, since=when(one.since)) for one in told.queue]
+    return SharedPlace(
+        name=told.name, state=PLACE_STATES[told.state], holder=told.holder, run=told.run, since=when(told.since),
+        queue=queue, reason=of_line(told.reason),
+    )  # fmt: skip
 
 
 def when(stamp: Time) -> datetime | None:

@@ -7,7 +7,7 @@ from pydantic import Field
 
 from tms_ur.base_model import Model
 from tms_ur.reason_view import ReasonView
-from tms_ur.watch_models import SeenBy, Watched
+from tms_ur.watch_models import Watched
 
 Document = dict[str, Any]
 Plain = bool | int | float | str | list[bool] | list[int] | list[float] | list[str]
@@ -107,18 +107,6 @@ class Host(Model):
     name: str
     age: float = Field(default=0.0, description="s since its agent last reported")
     processes: list[Process] = Field(default=[])
-
-
-class State(Model):
-    """Everything that goes on now."""
-
-    time: datetime = Field(description="when this was put together, by the clock of this PC")
-    machines: list[Machine]
-    scheduler: Scheduler
-    runs: list[ActiveRun] = Field(description="active runs")
-    questions: list[Question] = Field(default=[])
-    seen: list[SeenBy] = Field(default=[], description="what trackers of people, vehicles and gates tell")
-    hosts: list[Host]
 
 
 class Task(Model):

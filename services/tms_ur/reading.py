@@ -29,16 +29,17 @@ from tms_ur.models import (
     Run,
     SiteInfo,
     SiteMachine,
-    State,
     Task,
     TaskText,
     Template,
     Tree,
 )
+from tms_ur.place_models import SharedPlaces
 from tms_ur.problems import Viewer, problems
 from tms_ur.reason_view import view
 from tms_ur.reasons import JournalCut, NoTree
 from tms_ur.scene_models import Scene
+from tms_ur.state_models import State
 from tms_ur.stream import Stream, StreamResponse
 from tms_ur.watch_models import EnabledAreas
 
@@ -54,6 +55,7 @@ BEGINNING = 50  # first events of a run, which include the shape of the tree
 RunId = Annotated[str, Path(pattern=r"^[0-9A-Za-z_-]{1,64}$", description="id of a run")]
 TaskId = Annotated[int, Path(ge=1, le=INT32)]
 MachineName = Annotated[str, Path(pattern=r"^[a-z][a-z0-9_]{0,63}$")]
+PlaceName = Annotated[str, Path(min_length=1, max_length=64, description="id of a release area")]
 ProcessName = Annotated[str, Path(pattern=r"^[0-9A-Za-z_]{1,64}:[0-9A-Za-z_]{1,64}$", description="group:name")]
 
 
@@ -79,6 +81,10 @@ def _live(app: FastAPI, client: "SiteClient", site: Site) -> None:
     @app.get("/api/site", summary="The site's machines and their bodies")
     async def site_info() -> SiteInfo:
         return shown
+
+    @app.get("/api/places", summary="Shared places: who holds them, since when, and who waits")
+    async def places() -> SharedPlaces:
+        return client.board.snapshot().shared
 
     @app.get(
         "/api/events",

@@ -30,6 +30,7 @@ from tms_msg_ts.srv import AnswerQuestion, CancelRun, CheckTask
 from tms_config.clock import monotonic
 from tms_config.config import Site
 from tms_decision.gateway.stops import RECEIPT_LIMIT
+from tms_interfaces.generated import Coded, Reply, Req, ServiceType
 from tms_machine.places import PERIOD, Places
 from tms_machine.values import to_parameters
 from tms_reason import wire
@@ -37,12 +38,12 @@ from tms_reason.errors import RosError, TmsError
 from tms_reason.names import check_sent
 from tms_reason.reason import Foreign, Reason
 from tms_ros.client import Call
-from tms_ros.interface_types import Coded, Reply, Req, ServiceType
 from tms_ros.node import Ros
 from tms_ur import messages
 from tms_ur.board import Board
 from tms_ur.data_models import Change, Record, Sensing
 from tms_ur.models import AddedTemplate, Event, Host, Place, Rearmed, Receipt, Run, Task, TaskText, Template
+from tms_ur.place_client import PlaceClient
 from tms_ur.reason_view import of_error, of_line, view
 from tms_ur.reasons import RunNotBegun, StartRefused, UnknownProcess
 from tms_ur.scene_models import Scene, scene
@@ -61,7 +62,7 @@ class SiteClient:
         names = list(site.file.machines)
         self._ros = ros
         self.board = Board(names)
-        self.watching = Watching(ros, site, self.board)
+        self.watching, self.shared = Watching(ros, site, self.board), PlaceClient(ros, self.board)
         self._inputs: tuple[list[InputState], float] | None = None  # read and replaced in one step
         self._scheduler = ros.peer(ExecuteTask, "/tms/execute_task")
         self._places = Places(ros, {name: site.border(name) for name in names})

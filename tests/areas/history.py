@@ -13,16 +13,19 @@ from areas.truth import Array, Rules, edge
 from tms_areas.areas import Area, AreaSet, Point, ring
 from tms_areas.body import Body, Part, Silhouette
 from tms_areas.braking import Axis, Tracks
-from tms_areas.fix import Fix
+from tms_areas.fix import SURE, Fix
 from tms_areas.guard import Guard, Verdict
-from tms_areas.law import Law, Place
+from tms_areas.law import Law
+from tms_areas.reach import Place
 
 SECONDS = 60.0  # of a history
 BLIND, MOVES = 1.2, 0.1  # s without a right pose after which a machine must not be driven any more, at more than m/s
 BEAT = 0.05  # s between looks of the gateway
 LINK = 0.08  # s at most from a decision to the command at the machine
 GENTLE = 0.8  # share of the acceleration with which a driver brakes for its goal
+WRONG = 0.45  # m that no pose is off but one after a jump: drift, noise, and what it travels until it is heard
 DASHES = 5  # kinds of dashes, by turns
+SLOWEST = 0.15  # s of the slowest poses
 NEAR = 0.3  # m, rad: there
 
 
@@ -82,6 +85,7 @@ class Result:
     wild: bool
     crossed: float | None = None  # when the machine truly was where it must not be
     blind: float | None = None  # when it drove although nobody could know where it was
+    misled: float | None = None  # when it was stopped for good by a pose that was wrong by more than poses may be
     stopped: float | None = None  # when the law stopped it
     why: str = ""
     held: int = 0
@@ -94,7 +98,9 @@ class Result:
         """What must never happen and did, in words."""
         if self.crossed is not None:
             return f"the machine is where it must not be, at {self.crossed:.2f} s"
-        return "" if self.blind is None else f"nobody knows where it drives, at {self.blind:.2f} s"
+        if self.blind is not None:
+            return f"nobody knows where it drives, at {self.blind:.2f} s"
+        return "" if self.misled is None else f"a wrong pose is believed, at {self.misled:.2f} s"
 
 
 @dataclass
@@ -212,7 +218,8 @@ def _areas(r: random.Random) -> tuple[AreaSet, list[Array], list[Array]]:
 
 def run(seed: int, guarded: bool = True, keeps_on: float = math.inf, dash: bool = False) -> Result:
     """The history of a seed; not `guarded`: without the law, until it crosses. From `keeps_on` [s] on a wild driver's
-    command stays what it is. `dash`: it goes as fast as it can in one direction, as often as it is let."""
+    command stays what it is. `dash`: it goes as fast as it can in one direction, as often as it is let, and all is as
+    late, and as far off, as it may be."""
     what, r = made(seed, dash), random.Random(seed + 1)
     out = Result(seed, what.wild)
     fix, law = Fix(what.tracks.turning.top), Law(what.areas, "machine", what.tracks)
@@ -225,13 +232,15 @@ def run(seed: int, guarded: bool = True, keeps_on: float = math.inf, dash: bool 
                     what.tracks.turning.top, list(what.goals))  # fmt: skip
     if dash:
         driver.until, driver.wish = math.inf, _dash(seed, what.tracks)
-    going, stopped, next_beat = False, False, 0.0
+        told.delay, told.noise, told.drift = SLOWEST, 0.002, SURE
+    going, stopped, next_beat, wrong = False, False, 0.0, False
     wished = (0.0, 0.0)
     for step in range(round(SECONDS / STEP)):
         plant.step()
         now = plant.now
         for at, pose in told.take(now, (plant.x, plant.y, plant.yaw)):
             fix.heard(at, *pose)
+            wrong = math.dist(pose[:2], (plant.x, plant.y)) > WRONG
         fix.odometry(plant.v, plant.w)
         if now >= next_beat:
             next_beat = now + BEAT * r.uniform(0.8, 1.4)
@@ -239,8 +248,9 @@ def run(seed: int, guarded: bool = True, keeps_on: float = math.inf, dash: bool 
             verdict = guard.look(seen, {}, tracks=True) if guarded else Verdict()
             if verdict.stop is not None and going:
                 out.stopped, out.why = now, verdict.stop.code
+                out.misled = now if wrong else None
                 stopped, going = True, False
-                plant.command(0.0, 0.0, r.uniform(0, LINK))
+                plant.command(0.0, 0.0, LINK if dash else r.uniform(0, LINK))
             elif verdict.hold is not None and going:
                 out.held, going = out.held + 1, False
                 plant.command(0.0, 0.0, r.uniform(0, LINK))

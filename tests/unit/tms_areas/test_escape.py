@@ -10,7 +10,8 @@ from tms_areas.body import Body, Part, Silhouette
 from tms_areas.braking import Axis, Tracks
 from tms_areas.escape import FASTER, GROWS, SPEED, Escape
 from tms_areas.fix import Motion, Seen
-from tms_areas.law import Law, Place
+from tms_areas.law import Law
+from tms_areas.reach import Place
 from tms_areas.reasons import ComesFurtherOut, EscapesTooFast, NotFurtherIn, PoseJumped, TracksNotSlow
 from tms_reason.reason import Reason
 
@@ -33,7 +34,7 @@ class Reaching(Silhouette):
 
 
 def escape(slow: bool = True) -> Escape:
-    return Escape(Law(AreaSet((HUT, YARD)), "zx200", TRACKS), Reaching(), slow)
+    return Escape(Law(AreaSet((HUT, YARD)), "zx200", TRACKS, slow=slow), Reaching())
 
 
 def at(x: float, y: float = 0.0, yaw: float = 0.0, v: float = 0.0, turning: float = 0.0) -> Seen:

@@ -103,6 +103,37 @@ def test_a_speed_limit_holds_before_the_border_of_its_area() -> None:
     assert isinstance(law(SLOW).driving(SQUARE, fast), TooFastFor)
     assert law(SLOW).driving(SQUARE, slow) is None
     assert isinstance(law(SLOW).arriving(SQUARE, (0.0, 15.0, 0.0)), TooFastFor)  # nobody tells its speed
+
+
+def obeying(*areas: Area) -> Law:
+    """The law for tracks that take a speed limit."""
+    return Law(AreaSet((YARD, *areas)), "ic120", TRACKS, slow=True)
+
+
+def test_tracks_that_take_a_limit_may_drive_into_one() -> None:
+    assert obeying(SLOW).arriving(SQUARE, (0.0, 15.0, 0.0)) is None
+    assert isinstance(obeying(SLOW).driving(SQUARE, Motion(0.0, 8.5, 0.0, 0.0, 0.8)), TooFastFor)  # and obey it
+
+
+def test_the_least_limit_nearby_counts() -> None:
+    slower = Area("slower", "speed_limit", ((-20, 15), (20, 15), (20, 20), (-20, 20)), speed=0.2)
+    assert (
+        obeying().pace(SQUARE, Motion(0.0, 0.0, 0.0)) == obeying(SLOW).pace(SQUARE, Motion(0.0, -15.0, 0.0)) == math.inf
+    )
+    assert obeying(SLOW, slower).pace(SQUARE, Motion(0.0, 16.0, 0.0)) == pytest.approx(0.2 * the_law.HEEDED)
+    assert law(SLOW, tracks=None).pace(SQUARE, Motion(0.0, 16.0, 0.0)) == math.inf
+
+
+@pytest.mark.parametrize("late", [0.0, 1.0])
+def test_tracks_that_obey_are_slow_in_time(late: float) -> None:
+    found, y, speed, told = obeying(SLOW), -10.0, 1.0, [math.inf] * (1 + round(late / 0.04))
+    while y < 15.0:
+        motion = Motion(0.0, y, math.pi / 2, 0.0, speed, age=0.05)
+        assert found.driving(SQUARE, motion) is None, (y, speed)
+        told.append(found.pace(SQUARE, motion))
+        speed = max(speed - 0.04 * 0.5 * TRACKS.forward.acceleration, min(speed, told.pop(0)))
+        y += 0.04 * speed
+    assert speed == pytest.approx(0.5 * the_law.HEEDED)
     assert law(SLOW).arriving(SQUARE, (0.0, 0.0, 0.0)) is None
 
 

@@ -86,3 +86,17 @@ def test_it_counts_what_is_behind() -> None:
         assert pursuit.pieces_done == 1 or not pursuit.left, "it shall stand first"
     pursuit.step(TrackState(ARC.end))
     assert (pursuit.pieces_done, pursuit.left) == (2, 0.0)
+
+
+def test_a_limit_slows_lines_and_turns_by_the_same_share() -> None:
+    turn = Piece(Pose(0, 0, 0), 0.0, math.pi)
+    assert speed(on(LINE), Pose(5, 0, 0), 0.32) > 0.0
+    slow, free = on(LINE), on(turn)
+    slow._servo.fastest = 0.3
+    assert speed(slow, Pose(5, 0, 0), 0.32) < 0.0 < speed(slow, Pose(5, 0, 0), 0.28)
+    slow = on(turn)
+    slow._servo.fastest = 0.3
+    share = 0.3 / slow._drive.velocity
+    assert slow._servo.fastest_turn == pytest.approx(share * free._servo.fastest_turn)
+    r = slow._servo.fastest_turn
+    assert slow.step(TrackState(Pose(0, 0, 0), 0.0, r)).w < r  # it is as fast as it may be

@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from conftest import PROJECT
+
 PROGRAM = """
 import os, signal, sys
 
@@ -97,3 +99,25 @@ def test_only_libraries_are_shared() -> None:
     ours = {path.name for path in Path("services").glob("tms_*")}
     assert "rclpy.action" in loaded
     assert {name for name in loaded if name.partition(".")[0] in ours} == {"tms_host", "tms_host.prefork"}
+
+
+def imported(code: str) -> set[str]:
+    """Names of the packages that a program has imported when it ends."""
+    done = subprocess.run(
+        [sys.executable, "-c", f"{code}; import sys; print(*{{one.partition('.')[0] for one in sys.modules}})"],
+        cwd=PROJECT / "services", capture_output=True, text=True, timeout=60, check=True,
+    )  # fmt: skip
+    return set(done.stdout.split())
+
+
+def test_what_each_process_imports_is_loaded_before_it_is_forked() -> None:
+    """Else hundreds of starts of a test run load the same libraries once more."""
+    loaded = imported("from tms_host import prefork; prefork.load()")
+    needed = imported("import tms_runtime.run, tms_runtime.app, tms_runtime.graph")
+    assert {one for one in needed - loaded if not one.startswith(("tms_", "_"))} - sys.stdlib_module_names == set()
+
+
+def test_the_ground_needs_no_libraries_of_surveyors_to_start() -> None:
+    """Only a design in a file does: they take as long as all the rest of a start."""
+    needed = imported("import tms_ground.node")
+    assert "tms_soil" in needed and not {"laspy", "pyproj", "lxml"} & needed

@@ -14,6 +14,7 @@ from tms_config.config import CONFIGS
 from tms_config.models import MachineModel
 from tms_config.yaml_file import parse
 from tms_control.ground import Body
+from tms_control.path import Pose
 from tms_control.reasons import BlockedArea, MachineThere
 from tms_control.roads import Roads
 from tms_machine.drift import drift
@@ -30,6 +31,7 @@ from tms_ros.reasons import NoAnswer
 
 TRUCK = parse(CONFIGS / "machines" / "ic120.yaml", MachineModel)
 PIT = [10.0, 0.0, 20.0, 0.0, 20.0, 5.0]
+HERE = Pose(0.0, 0.0, 0.0)
 CORNERS = ((10.0, 0.0), (20.0, 0.0), (20.0, 5.0))
 
 
@@ -67,7 +69,9 @@ class Site:
             poll_in_thread=lambda *_: None,
         )  # fmt: skip
         machines = dict.fromkeys(("ic120_1", "ic120_2"))
-        site = SimpleNamespace(file=SimpleNamespace(machines=machines), model_of=lambda _: TRUCK, border=lambda _: None)
+        site = SimpleNamespace(
+            area_files=[], file=SimpleNamespace(machines=machines), model_of=lambda _: TRUCK, border=lambda _: None
+        )
         log = structlog.stdlib.get_logger("test")
         return Surroundings(SimpleNamespace(ros=ros, site=site, machine="ic120_1", log=log))  # type: ignore[arg-type]
 
@@ -97,7 +101,7 @@ def test_areas_are_read_and_machines_stand_where_they_were_told_to_be(monkeypatc
     site = Site()
     around = site.around(monkeypatch)
     assert around.ground().bodies == ()
-    around.read()
+    around.read(HERE)
     site.places["ic120_2"] = FramePose(30.0, 5.0, math.pi, monotonic())
     vessel, cab, pit = around.ground().bodies
     assert pit == Body(BlockedArea("pit"), CORNERS)
@@ -116,19 +120,19 @@ def test_a_machine_that_was_not_heard_for_long_is_grown(monkeypatch: pytest.Monk
 def test_without_the_database_what_was_read_last_holds(lost: str, monkeypatch: pytest.MonkeyPatch) -> None:
     site = Site()
     around = site.around(monkeypatch)
-    around.read()
+    around.read(HERE)
     setattr(site, lost, "STORE_DOWN" if lost == "error" else False)
     site.values = {}
-    around.read()
+    around.read(HERE)
     assert len(around.ground().bodies) == 1
 
 
 def test_without_a_record_nothing_is_blocked(monkeypatch: pytest.MonkeyPatch) -> None:
     site = Site()
     around = site.around(monkeypatch)
-    around.read()
+    around.read(HERE)
     site.error, site.values = "RECORD_MISSING", {}
-    around.read()
+    around.read(HERE)
     assert around.ground().bodies == ()
 
 
@@ -136,7 +140,7 @@ def test_a_record_that_is_too_old_refuses(monkeypatch: pytest.MonkeyPatch) -> No
     site = Site()
     site.error = "STALE_RECORD"
     with pytest.raises(SubtaskFailed) as caught:
-        site.around(monkeypatch).read()
+        site.around(monkeypatch).read(HERE)
     assert caught.value.reason == AreaUnfit("pit", 3, 50)  # the reason of the answer
 
 
@@ -147,8 +151,8 @@ def test_roads_are_read_of_the_machine_s_own_sections_before_shared_ones(monkeyp
         ("ic120_1", "s1"): {"x": 9.0, "y": 2.0},
     }  # fmt: skip
     around = site.around(monkeypatch)
-    around.read()
+    around.read(HERE)
     assert around.roads == Roads((((1.0, 2.0), (9.0, 2.0)),))
     site.sections = {}
-    around.read()
+    around.read(HERE)
     assert around.roads == Roads()

@@ -182,6 +182,7 @@ def test_a_person_lets_a_machine_back_in_slowly(tmp_path: Path, monkeypatch: pyt
     made, limits, acts = outside(tmp_path, monkeypatch)
     assert made.problem(NAVIGATE, to(15.0), JOINTS) is not None
     made.escape("T. Yamada")
+    look(made, 19.0)
     assert limits[-1] == SPEED and acts[-1][:3] == ("escape", "ic120_1", "T. Yamada")
     assert made.problem(NAVIGATE, to(15.0), JOINTS) is None
     assert isinstance(made.problem(NAVIGATE, to(22.0), JOINTS), ComesFurtherOut)
@@ -213,6 +214,7 @@ def test_the_way_back_ends_at_a_stop_and_with_other_areas(tmp_path: Path, monkey
     assert limits[-1] == math.inf
     made.escape("T. Yamada")
     made.enable(YARD, "a person", only_check=False)
+    look(made, 19.0)
     assert limits[-1] == math.inf and made.problem(NAVIGATE, to(15.0), JOINTS) is not None
 
 

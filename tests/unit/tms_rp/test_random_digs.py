@@ -53,7 +53,7 @@ def check_touch(plan: Plan, scene: Scene, top: float | None) -> None:
     assert beyond(made) == []
     for driven in (made, made.lagging([late - min(filter(None, LATE)) if late else 0.0 for late in LATE])):
         poses = dense(driven)
-        assert touched(scene, poses) == []
+        assert list(touched(scene, poses)) == []
         for link in ("boom_link", "arm_link"):
             assert not in_the_ground(poses, link, min(0.0, top or 0.0)).any()
         deep = in_the_ground(poses, "bucket_link", 0.0)

@@ -6,6 +6,7 @@ and triangles by theirs.
 
 import math
 import random
+from collections.abc import Iterator
 from itertools import pairwise
 
 import numpy as np
@@ -70,16 +71,12 @@ def touch(a: Placed, b: Placed) -> bool:
     near = np.linalg.norm(way, axis=1) <= np.linalg.norm(half_a) + np.linalg.norm(half_b)  # of the spheres around them
     if not near.any():
         return False
-    way, count = way[near], int(near.sum())
-    columns_a, columns_b = (
-        [(axes[near] if len(axes) > 1 else axes)[:, :, i] for i in range(3)] for axes in (axes_a, axes_b)
-    )
-    crossed = [np.cross(p, q) for p in columns_a for q in columns_b]
-    apart = np.zeros(count, dtype=bool)
-    for axis in (*columns_a, *columns_b, *crossed):
-        size = sum(h * np.abs((axis * c).sum(1)) for half, cs in ((half_a, columns_a), (half_b, columns_b))
-                   for h, c in zip(half, cs, strict=True))  # fmt: skip
-        apart |= np.abs((axis * way).sum(1)) > size + 1e-9
+    turned = [(axes[near] if len(axes) > 1 else axes, half) for axes, half in ((axes_a, half_a), (axes_b, half_b))]
+    first, second = (np.broadcast_to(axes, (near.sum(), 3, 3)).swapaxes(1, 2) for axes, _ in turned)  # axes as rows
+    crossed = np.cross(first[:, :, None], second[:, None]).reshape(-1, 9, 3)
+    tried = np.concatenate([first, second, crossed], axis=1)  # N x 15 x 3
+    size = sum(np.abs(tried @ axes) @ half for axes, half in turned)
+    apart = (np.abs(tried @ way[near, :, None])[..., 0] > size + 1e-9).any(axis=1)
     return not apart.all()
 
 
@@ -103,21 +100,18 @@ def touches_surface(box: Placed, corners: Array) -> bool:
     return not apart.all()
 
 
-def touched(scene: Scene, poses: Array) -> list[tuple[str, str]]:
+def touched(scene: Scene, poses: Array) -> Iterator[tuple[str, str]]:
     found = bodies(poses)
-    pairs = [(a, b, found[a], found[b]) for a, b in OWN]
-    surfaces = [one for one in scene.obstacles if one.mesh is not None]
+    pairs = [(a, b, found[b]) for a, b in OWN]
+    for one in scene.obstacles:
+        if one.mesh is None:
+            fixed = of_box(one.box, one.place[None, :3, :3], one.place[None, :3, 3])
+            pairs += [(link, str(one.name), fixed) for link in ARM]
+    yield from ((a, b) for a, b, other in pairs if touch(found[a], other))
     for one in scene.obstacles:
         if one.mesh is not None:
-            continue
-        fixed = of_box(one.box, one.place[None, :3, :3], one.place[None, :3, 3])
-        pairs += [(link, str(one.name), found[link], fixed) for link in ARM]
-    named = [(a, b) for a, b, first, second in pairs if touch(first, second)]
-    for one in surfaces:
-        assert one.mesh is not None
-        corners = one.mesh.vertices[one.mesh.faces] @ one.place[:3, :3].T + one.place[:3, 3]
-        named += [(link, str(one.name)) for link in ARM if touches_surface(found[link], corners)]
-    return named
+            corners = one.mesh.vertices[one.mesh.faces] @ one.place[:3, :3].T + one.place[:3, 3]
+            yield from ((link, str(one.name)) for link in ARM if touches_surface(found[link], corners))
 
 
 def dense(made: Trajectory) -> Array:
@@ -132,7 +126,7 @@ def dense(made: Trajectory) -> Array:
 def free_pose(rng: random.Random, scene: Scene) -> Angles:
     """A pose that touches nothing and stands above the ground, by this implementation."""
     with_ground = Scene((*scene.obstacles, Obstacle(PartOf("ground", "site"), GROUND, np.eye(4))))
-    while touched(with_ground, np.array([(*(pose := random_pose(rng)), 0.0)])):
+    while any(touched(with_ground, np.array([(*(pose := random_pose(rng)), 0.0)]))):
         pass
     return pose
 
@@ -171,7 +165,7 @@ def test_no_way_touches_anything_or_leaves_the_limits(seed: int) -> None:
         return
     made, notes = found.made, found.notes
     around = Obstacle(PartOf("ground", "site"), GROUND, np.eye(4))
-    assert touched(Scene((*scene.obstacles, around)) if notes else scene, dense(made)) == []
+    assert list(touched(Scene((*scene.obstacles, around)) if notes else scene, dense(made))) == []
     assert beyond_limits(made) == []
     assert made.samples[0].positions[:4] == now
     assert np.cos(np.array(made.samples[-1].positions[:4]) - target).min() > 1 - 1e-9

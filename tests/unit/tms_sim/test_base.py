@@ -78,3 +78,15 @@ def test_the_same_at_any_time_scale() -> None:
         run(base, 40, step)
         ends.append((base.x, base.y, base.yaw))
     assert ends[0] == pytest.approx(ends[1], abs=1e-9)
+
+
+def test_a_limit_slows_ways_and_turns_by_the_same_share() -> None:
+    base = Base(DRIVE, (0.0, 0.0, math.pi))
+    base.limit(0.2)
+    base.go([Leg(5, 0, 0.0)])
+    seen = run(base, 90)
+    assert not base.legs and max(v for v, _ in seen) == pytest.approx(0.2)
+    assert max(abs(w) for _, w in seen) == pytest.approx(0.2 * DRIVE.turn_velocity, rel=0.02)
+    base.limit(math.inf)
+    base.go([Leg(15, 0, 0.0)])
+    assert max(v for v, _ in run(base, 10)) == pytest.approx(DRIVE.velocity)

@@ -124,3 +124,20 @@ def test_a_truck_hauls_its_load() -> None:
     assert moved_by(earth, "ic120") < 0.02 * load
     pile = earth.grid.heights((-2, -4, 2, 0)).z
     assert pile.max() > 0.1, "behind it"
+
+
+def test_where_parts_are_is_known_while_a_machine_stands() -> None:
+    body = loading_site().bodies["zx200"]
+    angles, base = (
+        {"swing_joint": 0.0, "boom_joint": -0.5, "arm_joint": 1.2, "bucket_joint": 0.4},
+        placed(1.0, 2.0, 0.3),
+    )
+    first = body.at(angles, base)
+    assert body.at(dict(angles), base) is first
+    angles["arm_joint"] += 0.01
+    bent = body.at(angles, base)
+    assert not np.array_equal(bent["digger"], first["digger"])
+    moved_on = body.at(angles, placed(1.0, 2.1, 0.3))
+    assert moved_on["digger"][1, 3] == pytest.approx(bent["digger"][1, 3] + 0.1)
+    again = body.at({**angles, "arm_joint": 1.2}, base)
+    assert all(np.array_equal(again[part], first[part]) for part in first)

@@ -143,11 +143,32 @@ class Clock:
 
 
 @dataclass
+class FakePlaces:
+    """Lets go who is not told to wait."""
+
+    why: Reason | None = None
+    refusal: Reason | None = None
+    calls: list[tuple[str, str, str]] = field(default_factory=list)
+
+    def hold(self, machine: str, place: str) -> Answer[None]:
+        self.calls.append(("hold", machine, place))
+        return Answer(error=self.refusal)
+
+    def free(self, machine: str, place: str) -> Answer[None]:
+        self.calls.append(("free", machine, place))
+        return Answer(error=self.refusal)
+
+    def waits(self, machine: str, place: str) -> Reason | None:
+        return self.why
+
+
+@dataclass
 class FakeWorld:
     machines: FakeMachines = field(default_factory=FakeMachines)
     flags: FakeFlags = field(default_factory=FakeFlags)
     clicks: FakeClicks = field(default_factory=FakeClicks)
+    places: FakePlaces = field(default_factory=FakePlaces)
     clock: Clock = field(default_factory=Clock)
 
     def world(self) -> World:
-        return World(self.machines, self.flags, self.clicks, self.clock)
+        return World(self.machines, self.flags, self.clicks, self.places, self.clock)

@@ -53,7 +53,8 @@ def successor(records: Records, journal: list[Any]) -> Interrupted:
     app = SimpleNamespace(
         stopping=threading.Event(), log=structlog.stdlib.get_logger("test"), ros=SimpleNamespace(now=Time)
     )
-    return Interrupted(app, SimpleNamespace(put=journal.append), records)  # type: ignore[arg-type]
+    places = SimpleNamespace(free_all=lambda *_: None)
+    return Interrupted(app, SimpleNamespace(put=journal.append), records, places)  # type: ignore[arg-type]
 
 
 def test_a_lost_run_that_is_closed_leaves_no_open_file(

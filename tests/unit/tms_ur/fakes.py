@@ -53,6 +53,17 @@ class FakeWatching:
         return EnabledAreas(id="9f", by="a person", areas={"type": "FeatureCollection", "features": [yard]})
 
 
+class FakePlaces:
+    """The keeper of shared places."""
+
+    def __init__(self, client: "FakeSiteClient") -> None:
+        self._client = client
+
+    def revoke(self, place: str, who: str) -> str:
+        self._client._called("revoke", place, who)
+        return "zx200"
+
+
 class FakeSiteClient:
     """Same methods as the real one; `error` is what the next call raises, `calls` what was asked."""
 
@@ -61,6 +72,7 @@ class FakeSiteClient:
         self.watching = FakeWatching()
         self.error: TmsError | None = None
         self.calls: list[tuple[object, ...]] = []
+        self.shared = FakePlaces(self)
 
     def tasks(self) -> list[Task]:
         self._called("tasks")

@@ -5,11 +5,17 @@ from collections.abc import AsyncIterator
 from datetime import datetime, timedelta
 
 import pytest
+from builtin_interfaces.msg import Time
+from fastapi import FastAPI
+from tms_msg_areas import msg as areas
 
 from tms_config.clock import utc_now
 from tms_decision.reasons import SoftwareStopBy
+from tms_places.reasons import WaitingCircle
 from tms_reason.errors import TmsError
 from tms_reason.reason import Foreign
+from tms_reason.wire import to_line
+from tms_ur import messages
 from tms_ur.models import ActiveRun, Event, Host, Joint, Machine, Process
 from tms_ur.reason_view import view
 from tms_ur.security import SECURITY, is_loopback
@@ -25,7 +31,7 @@ COMMANDS = [
     ("/api/machines/zx200/rearm", {}), ("/api/tasks", {"xml": XML}), ("/api/tasks/4/remove", {}),
     ("/api/tasks/check", {"xml": XML}), ("/api/tasks/4/diff", {"xml": XML}), ("/api/parameters", RECORD),
     ("/api/processes/zx200:rc/restart", {}), ("/api/templates", {"name": "Dig", "xml": XML}),
-    ("/api/machines/zx200/escape", {}),
+    ("/api/machines/zx200/escape", {}), ("/api/places/road/revoke", {}),
 ]  # fmt: skip
 
 
@@ -250,6 +256,21 @@ def test_processes(client: Client, site_client: FakeSiteClient) -> None:
     assert client.get("/api/processes/a%2Fb/log").status_code in (404, 422)
 
 
+def test_shared_places(client: Client, site_client: FakeSiteClient) -> None:
+    assert client.get("/api/places").json() == {"places": [], "alarms": []}
+    queue = [areas.PlaceRequest(machine="ic120", run="r-2", since=Time(sec=100))]
+    place = areas.Place(name="road", state=areas.Place.HELD, holder="zx200", run="r-1", since=Time(sec=60), queue=queue)
+    circle = to_line(WaitingCircle(("zx200", "ic120", "zx200")))
+    site_client.board.put_shared(messages.shared_places(areas.Places(places=[place], alarms=[circle])))
+    told = client.get("/api/places").json()
+    (road,) = told["places"]
+    assert (road["state"], road["holder"], road["since"]) == ("held", "zx200", "1970-01-01T00:01:00Z")
+    assert [one["machine"] for one in road["queue"]] == ["ic120"] and told["alarms"][0]["code"] == "WAITING_CIRCLE"
+    assert client.get("/api/state").json()["shared"] == told
+    assert client.post("/api/places/road/revoke", json={}).json() == {"place": "road", "holder": "zx200"}
+    assert site_client.calls == [("revoke", "road", "local at 127.0.0.1")]
+
+
 def test_tree_of_a_run(client: Client, site_client: FakeSiteClient) -> None:
     tree = client.get("/api/runs/r-1/tree").json()
     assert (tree["names"], tree["templates"]) == (["all"], []), "journals of earlier releases know no templates"
@@ -290,7 +311,7 @@ def test_every_command_is_audited(site_client: FakeSiteClient) -> None:
         assert client.post(path, json=body).is_success, path
     assert {what for _, _, what, _ in audit.notes} == {
         "start_run", "cancel_run", "answer", "rearm_asked", "escape_asked", "add_task", "remove_task", "set_parameter",
-        "restart", "stop", "add_template",
+        "restart", "stop", "add_template", "revoke_place_asked",
     }  # fmt: skip
     assert {(who, where) for who, where, _, _ in audit.notes} == {("local", "127.0.0.1")}
 
@@ -541,6 +562,18 @@ def test_a_scene_that_there_is_not(site_client: FakeSiteClient) -> None:
 # the document
 
 
+def test_the_document_is_made_once_when_it_is_asked_for(
+    site_client: FakeSiteClient, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It takes as long as all the rest of the application, which starts a hundred times for each time it is read."""
+    made, make = list[FastAPI](), FastAPI.openapi
+    monkeypatch.setattr(FastAPI, "openapi", lambda app: (made.append(app), make(app))[1])
+    client = Client(app(site_client))
+    assert made == []
+    first, second = (client.get("/openapi.json") for _ in range(2))
+    assert first.content == second.content and len(made) == 1
+
+
 def test_every_endpoint_is_in_the_document(client: Client) -> None:
     document = client.get("/openapi.json").json()
     assert set(document["paths"]) == {
@@ -552,7 +585,7 @@ def test_every_endpoint_is_in_the_document(client: Client) -> None:
         "/api/tasks/{task_id}/diff", "/api/tasks/{task_id}/remove", "/api/runs/{run_id}/tree",
         "/api/runs/{run_id}/export", "/api/audit", "/api/machines/{name}/scene",
         "/api/processes/{name}/log", "/api/processes/{name}/restart",
-        "/api/templates", "/api/areas",
+        "/api/templates", "/api/areas", "/api/places", "/api/places/{name}/revoke",
     }  # fmt: skip
     assert {method for path in document["paths"].values() for method in path} == {
         "get",

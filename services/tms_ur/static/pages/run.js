@@ -1,6 +1,7 @@
 // Run: machines, active runs and tasks to start.
 import { at, button, duration, heading, keep, make, number, part, parts, say, setBadge, setText, table } from "../dom.js";
 import { cancelRun, rearmMachine } from "../actions.js";
+import { buildPlace, fillPlace } from "../places.js";
 import { fillReason, once, showError } from "../reasons.js";
 import { ask } from "../server.js";
 import { stop } from "../stop.js";
@@ -17,6 +18,8 @@ export function build(root) {
     table("list_tasks", "tasks", ["task", "model", "description", "run"]), make("div", { id: "checked", role: "status" }),
     heading("machines"), make("p", { id: "none_machines", hidden: true, data: { t: "none_machines" } }),
     make("div", { id: "list_machines", className: "cards" }),
+    make("section", { id: "shared_places", hidden: true }, heading("shared_places"), make("ul", { id: "place_alarms", className: "rows" }),
+      make("ul", { id: "list_places", className: "rows" })),
   );
   tasks = null;
 }
@@ -40,6 +43,9 @@ export function update(state) {
   keep(at("list_active"), state.runs, (run) => run.run_id, buildActive, fillActive);
   at("none_machines").hidden = state.machines.length > 0;
   keep(at("list_machines"), state.machines, (machine) => machine.name, buildMachine, fillMachine);
+  at("shared_places").hidden = state.shared.places.length === 0;
+  keep(at("place_alarms"), state.shared.alarms, (alarm) => said(alarm), () => make("li"), fillReason);
+  keep(at("list_places"), state.shared.places, (place) => place.name, buildPlace, fillPlace);
 }
 
 // runs

@@ -1,0 +1,1 @@
+"""What interfaces are to Python code: the types of generated classes."""

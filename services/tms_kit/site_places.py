@@ -1,0 +1,51 @@
+"""Shared places as their keeper tells them on /tms/places."""
+
+from collections.abc import Callable
+from datetime import datetime
+
+from builtin_interfaces.msg import Time
+from tms_msg_areas.msg import Place, Places
+
+from tms_machine import stamps
+from tms_places.reasons import WaitsForKeeper, WaitsForLease, WaitsForPlace, WaitsItsTurn
+from tms_reason.reason import Reason
+from tms_ros.node import Ros
+
+
+class SitePlaces:
+    """Who holds which place, and who waits for it."""
+
+    def __init__(self, ros: Ros, changed: Callable[[], None] = lambda: None) -> None:
+        """`changed` is called on the executor thread."""
+        self._told: dict[str, Place] | None = None  # replaced, never changed
+        self._changed = changed
+        ros.subscribe(Places, "/tms/places", self._heard, latched=True)
+
+    @property
+    def names(self) -> tuple[str, ...] | None:
+        """The places of the site; None while nobody has told of them."""
+        return None if self._told is None else tuple(self._told)
+
+    def waits(self, machine: str, place: str) -> Reason | None:
+        """Why a machine that wants a place must not go there yet; None: its gateway lets it in."""
+        told = (self._told or {}).get(place)
+        queue = [] if told is None else [one.machine for one in told.queue]
+        if told is not None and told.holder == machine:
+            if told.state == Place.HELD:
+                return None
+            if told.state == Place.GRANTED:
+                return WaitsForLease(machine, place)
+        if told is None or machine not in queue:
+            return WaitsForKeeper(machine, place)
+        if told.holder not in ("", machine):
+            return WaitsForPlace(machine, place, told.holder, _clock(told.since))
+        ahead = queue[: queue.index(machine)]
+        return WaitsItsTurn(machine, place, ahead[0]) if ahead else WaitsForLease(machine, place)
+
+    def _heard(self, told: Places) -> None:
+        self._told = {one.name: one for one in told.places}
+        self._changed()
+
+
+def _clock(since: Time) -> str:
+    return datetime.fromtimestamp(stamps.seconds(since)).astimezone().strftime("%H:%M:%S")

@@ -1,0 +1,59 @@
+"""The gateway's side of shared places: which of them are open to its machine, and what it reports.
+
+A lease counts from the moment its report was sent, so it ends here before anybody else may think so. An answer to an
+older report than the last one is none: the keeper may have freed since then what it grants.
+"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+
+from tms_places.keeper import LEASE, Leases, Report
+
+PERIOD = 3.0  # s between reports
+SOON = 0.3  # s, where something is to be told or expected
+
+
+@dataclass
+class OwnLeases:
+    """The leases of one machine; all times monotonic [s]."""
+
+    machine: str
+    evacuates: frozenset[str] = frozenset()  # places out of which it may still drive when it has lost them
+    until: dict[str, float] = field(default_factory=dict)  # when the lease of a place in use ends
+    leaving: frozenset[str] = frozenset()
+    revoked: frozenset[str] = frozenset()
+    number: int = 0  # of the last report
+    sent: float = 0.0
+
+    def report(self, number: int, places: Iterable[str], inside: frozenset[str], sure: bool, now: float) -> Report:
+        """What to tell the keeper now; `number`: of nanoseconds since 1970, so it is larger after a restart, too."""
+        self.number, self.sent = max(number, self.number + 1), now
+        return Report(self.machine, self.number, frozenset(places), inside, sure, frozenset(self.until))
+
+    def answered(self, number: int, told: Leases, inside: frozenset[str], lease: float = LEASE) -> None:
+        """The keeper's answer to a report."""
+        if number != self.number:
+            return
+        keeps = told.held | (told.leaving & (self.until.keys() | inside))
+        keeps |= told.revoked & self.evacuates & inside
+        self.leaving, self.revoked = told.leaving, told.revoked
+        self.until = {place: self.sent + lease for place in keeps}
+
+    def give_back(self, inside: frozenset[str], sure: bool, drives: bool) -> None:
+        """Let those count no more that nobody wants, once the machine is outside and does not drive."""
+        if sure and not drives:
+            for place in (self.leaving | self.revoked) - inside:
+                self.until.pop(place, None)
+
+    @property
+    def open(self) -> frozenset[str]:
+        """Places that are not closed to the machine. In those that are `lost`, it must not go on."""
+        return frozenset(self.until)
+
+    def lost(self, now: float) -> frozenset[str]:
+        """Places whose lease is over, or that were revoked: nothing may drive in or stay on the move inside."""
+        return frozenset(place for place, end in self.until.items() if end <= now or place in self.revoked)
+
+    def held(self, now: float) -> frozenset[str]:
+        """Places into which it may drive."""
+        return frozenset(self.until) - self.lost(now) - self.leaving

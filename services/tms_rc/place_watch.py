@@ -1,0 +1,145 @@
+"""Release areas in the gateway: reports to the keeper of shared places, and what its leases open to the machine.
+
+The gateway's own lease is what counts while the machine moves. It is renewed in a thread of its own; without tms:db
+it runs out, and the machine is held where it would go on in such an area.
+"""
+
+import threading
+from collections.abc import Callable, Mapping, Sequence
+
+from tms_msg_areas.msg import Places
+from tms_msg_areas.srv import ReportPlaces
+
+from tms_areas.areas import Area, AreaSet
+from tms_areas.fix import Seen
+from tms_areas.guard import Guard
+from tms_areas.reach import Place
+from tms_areas.release import corners_of, needed, straight, touched
+from tms_config.clock import monotonic, unix_ns
+from tms_machine.asking import ask
+from tms_places.keeper import Leases
+from tms_places.leases import PERIOD, SOON, OwnLeases
+from tms_places.reasons import LeaseOver, OnlyOut, PlacesNeeded
+from tms_reason.errors import RosError
+from tms_reason.reason import Reason
+from tms_runtime.app import App
+
+LIMIT = 2.0  # s for the keeper to answer
+AGAIN = 1.0  # s after a report that was not answered
+Guards = Callable[[frozenset[str]], Guard]  # the guard of a machine that holds some places
+
+
+class PlaceWatch:
+    """The leases of one machine."""
+
+    def __init__(self, app: App) -> None:
+        self._app, self._own, self._lock = app, OwnLeases(app.machine), threading.Lock()
+        self._areas: tuple[Area, ...] = ()
+        self._inside: frozenset[str] = frozenset()
+        self._sure, self._due, self._silent = False, 0.0, False
+        app.ros.subscribe(Places, "/tms/places", self._heard, latched=True)
+        app.ros.poll_in_thread(SOON, self._report, "places")
+
+    def enable(self, areas: AreaSet) -> None:
+        """The release areas of a set that counts from now on."""
+        with self._lock:
+            self._areas = areas.of("release")
+            self._own.evacuates = frozenset(one.id for one in self._areas if one.on_loss == "evacuate")
+
+    @property
+    def open(self) -> frozenset[str]:
+        """Places that are not closed to the machine."""
+        with self._lock:
+            return self._own.open
+
+    # the look
+
+    def look(self, guard: Guard, joints: Mapping[str, float], seen: Seen, drives: bool) -> Reason | None:
+        """Where the machine is now; and why its tracks must be held: a lease that is over, where it is or may come.
+
+        Geometry is done outside of the lock, for which the executor thread may wait.
+        """
+        areas, motion, sure = self._areas, seen.motion, seen.unsure is None
+        if not areas:
+            return None
+        inside, body = self._inside, guard.body(joints)
+        if motion is not None and sure:
+            inside = touched(guard.law.now(body, motion), areas)
+        lost = self._seen_inside(inside, sure, drives) - self._own.evacuates
+        if not lost or not drives or motion is None:
+            return None
+        there = touched(guard.law.until_it_stands(body, motion), [one for one in areas if one.id in lost])
+        return LeaseOver(self._app.machine, min(there)) if there else None
+
+    def _seen_inside(self, inside: frozenset[str], sure: bool, drives: bool) -> frozenset[str]:
+        """Note where the machine is, and give back what nobody wants; the places whose lease is over."""
+        with self._lock:
+            before = (self._inside, self._sure, self._own.open)
+            self._inside, self._sure = inside, sure
+            self._own.give_back(inside, sure, drives)
+            if before != (inside, sure, self._own.open):
+                self._due = 0.0
+            return self._own.lost(monotonic())
+
+    # goals
+
+    def judged(
+        self, guards: Guards, seen: Seen, joints: Mapping[str, float], way: Sequence[Place], told: bool
+    ) -> Reason | None:
+        """Why tracks must not go a way; PlacesNeeded, if it lacks nothing but these. As Guard.may_drive."""
+        with self._lock:
+            areas, inside = self._areas, self._inside
+            lost = self._own.lost(monotonic())
+            usable, evacuates = self._own.open - (lost - inside), self._own.evacuates
+        stuck = inside & lost
+        if stuck - evacuates:
+            return LeaseOver(self._app.machine, min(stuck - evacuates))
+        if stuck and seen.motion is not None:
+            outside = guards(usable - lost)
+            if outside.law.arriving(outside.body(joints), way[-1]) is not None:
+                return OnlyOut(self._app.machine, min(stuck))
+        likely: frozenset[str] = frozenset()
+        if not told and seen.motion is not None:
+            here = (seen.motion.x, seen.motion.y, seen.motion.yaw)
+            radius = max(part.spin for part in guards(usable).body(joints).parts)
+            likely = straight(areas, corners_of(here, way), radius) - usable
+        found, wrong = needed(areas, likely, lambda more: guards(usable | more).may_drive(seen, joints, way, told))
+        if wrong is not None or not found:
+            return wrong
+        return PlacesNeeded(self._app.machine, tuple(sorted(found)))
+
+    # the keeper
+
+    def _heard(self, told: Places) -> None:
+        """Report soon what the keeper waits for."""
+        machine = self._app.machine
+        with self._lock:
+            mine = {one.name: one.state for one in told.places if one.holder == machine}
+            if any(state == told.places[0].GRANTED for state in mine.values()) or mine.keys() != self._own.open:
+                self._due = 0.0
+
+    def _report(self) -> None:
+        now = monotonic()
+        with self._lock:
+            if not self._areas or now < self._due:
+                return
+            names = [one.id for one in self._areas]
+            report = self._own.report(unix_ns(), names, self._inside, self._sure, now)
+            self._due = now + PERIOD
+        request = ReportPlaces.Request(
+            machine=report.machine, number=report.number, places=sorted(report.places), inside=sorted(report.inside),
+            sure=report.sure, in_use=sorted(report.using),
+        )  # fmt: skip
+        try:
+            answer = ask(self._app.ros, ReportPlaces, "/tms/places/report", request, LIMIT)
+        except RosError as error:
+            if not self._silent:
+                self._app.log.warning("places_not_renewed", reason=error.reason)
+            self._silent, self._due = True, now + AGAIN
+            return
+        self._silent = False
+        told = Leases(frozenset(answer.held), frozenset(answer.leaving), frozenset(answer.revoked))
+        with self._lock:
+            self._own.answered(report.number, told, self._inside, answer.lease)
+            if self._own.open != report.using:
+                self._due = 0.0  # the keeper waits for the word that the gateway knows
