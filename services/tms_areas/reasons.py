@@ -48,6 +48,10 @@ class TrackerTypeWrong(Reason, text="a tracker of the kind {kind} sends one of {
 class NoTracker(Reason, text="sensing.yaml has no tracker {name}; it has {known}", action=EDIT_CONFIG):
     name: str; known: tuple[str, ...]
 class GateNeedsArea(Reason, text="a gate names the unmanned areas that it leads to", action=EDIT_CONFIG): pass
+class TrackersNeedAreas(Reason, text="trackers take areas of the site, of which there are none: {trackers}",
+    action=EDIT_CONFIG): trackers: tuple[str, ...]
+class TrackerOfNoArea(Reason, text="tracker {tracker}: there is no unmanned area {area}, but {known}",
+    action=EDIT_CONFIG): tracker: str; area: str; known: tuple[str, ...]
 class APerson(Reason, text="a person"): pass
 class AVehicle(Reason, text="a vehicle"): pass
 class IntruderInside(Reason, text="{machine}: {who} is in the unmanned area {area} near ({x}, {y}), as {tracker} says",

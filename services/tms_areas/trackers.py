@@ -1,11 +1,13 @@
 """Trackers of people, vehicles and gates, as `trackers:` of sensing.yaml names them. No protective devices."""
 
+from collections.abc import Collection, Mapping
 from typing import Literal
 
 from pydantic import Field, model_validator
 
-from tms_areas.reasons import GateNeedsArea, TrackerTypeWrong
+from tms_areas.reasons import GateNeedsArea, TrackerOfNoArea, TrackersNeedAreas, TrackerTypeWrong
 from tms_config.models import Settings
+from tms_reason.reason import Reason
 from tms_reason.validation import Wrong
 
 Kind = Literal["person", "vehicle", "gate"]
@@ -49,3 +51,14 @@ class Tracker(Settings):
         """How far from its place [m] somebody may be who was seen there `age` s ago."""
         radius = RADIUS[self.kind] if self.radius is None else self.radius
         return radius + SPEED[self.kind] * age
+
+
+def trackers_flaw(trackers: Mapping[str, Tracker], unmanned: Collection[str]) -> Reason | None:
+    """What is wrong with the trackers of a site that has these unmanned areas; None if nothing is."""
+    if trackers and not unmanned:
+        return TrackersNeedAreas(tuple(trackers))
+    for name, one in trackers.items():
+        for area in one.areas:
+            if area not in unmanned:
+                return TrackerOfNoArea(name, area, tuple(sorted(unmanned)))
+    return None

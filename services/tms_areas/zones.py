@@ -42,9 +42,12 @@ class Zones:
             shapely.prepare(shape)
 
     def share(self, area: str, here: Point | None) -> bool:
-        """Whether a machine at a place is, or may come, where an unmanned area is; None: its place is not known."""
+        """Whether a machine at a place is, or may come, where an unmanned area is; None: its place is not known.
+
+        An area that is not among the enabled ones may be anywhere.
+        """
         shapes = [one.polygon for one in self._unmanned if one.id == area]
-        return any(shapely.intersects(piece, shape) for piece in self._of(here) for shape in shapes)
+        return not shapes or any(shapely.intersects(piece, shape) for piece in self._of(here) for shape in shapes)
 
     def found(self, places: Array, around: float, here: Point | None) -> Found | None:
         """The first of some places (N x 2) that endangers, or comes near to, a machine.

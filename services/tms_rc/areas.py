@@ -10,10 +10,8 @@ from rcl_interfaces.msg import ParameterType, ParameterValue, SetParametersResul
 from rcl_interfaces.srv import GetParameters, SetParametersAtomically
 
 from tms_decision.gateway.state import Gateway
-from tms_machine.sensing import load_sensing
 from tms_rc.area_path import area_path
 from tms_rc.motion_servers import MotionServers
-from tms_rc.people import People
 from tms_rc.stop_receipt import ReceiptTopic
 from tms_reason.errors import TmsError
 from tms_reason.wire import to_line
@@ -30,17 +28,6 @@ def begin(app: App, gateway: Gateway, servers: MotionServers, receipts: ReceiptT
     servers.areas = watch = AreaWatch(app, gateway, servers.drives, Acts(app).tell)
     receipts.heard = watch.stops.put
     _Service(app, watch)
-
-
-def look_for_intruders(app: App, gateway: Gateway, servers: MotionServers, people: People) -> None:
-    """Watch for people and vehicles in the areas, where the site has trackers of them."""
-    if servers.areas is None or not load_sensing(app.site).trackers:
-        return
-    from tms_rc.intruder_watch import IntruderWatch
-
-    watch = IntruderWatch(app, gateway, servers.areas, servers.drives, people.stop)
-    servers.watches.append(watch)
-    people.unarmed.append(watch.unarmed)
 
 
 class _Service:

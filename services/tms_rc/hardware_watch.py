@@ -1,5 +1,7 @@
 """Watches what the hardware of a machine tells, in a thread of its own."""
 
+from collections.abc import Callable
+
 from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 
 from tms_config.clock import monotonic
@@ -8,8 +10,6 @@ from tms_decision.gateway.state import Gateway
 from tms_decision.reasons import ProcessLost
 from tms_hardware.hardware import Condition, Known
 from tms_rc.latch_order import LatchOrder
-from tms_rc.motion_servers import MotionServers
-from tms_rc.people import People
 from tms_rc.reasons import HardwareLate
 from tms_rc.shell import Shell
 from tms_rc.watches import status
@@ -24,9 +24,10 @@ LATE = 0.3  # s; an older look is none
 class HardwareWatch:
     """The hardware of one machine, as its gateway sees it."""
 
-    def __init__(self, app: App, shell: Shell, gateway: Gateway, people: People) -> None:
+    def __init__(self, app: App, shell: Shell, gateway: Gateway, stop: Callable[[Reason], None]) -> None:
+        """`stop`: has the machine stopped and latched, without waiting."""
         self._hearing = HardwareHearing(app.ros, app.site, app.machine)
-        self._shell, self._gateway, self._order = shell, gateway, LatchOrder(gateway, people.stop)
+        self._shell, self._gateway, self._order = shell, gateway, LatchOrder(gateway, stop)
         self._manual = False  # what the decisions were told
         # Replaced, never changed: read without a lock.
         self.condition, self.state, self._at = Condition(), dict[str, Known](), monotonic()
@@ -69,12 +70,3 @@ class HardwareWatch:
         if manual != self._manual and (not manual or self._gateway.active is None):
             self._manual = manual
             self._shell.happened(Manual(manual))
-
-
-def begin(app: App, shell: Shell, gateway: Gateway, servers: MotionServers, people: People) -> None:
-    """Watch the hardware of the machine, where the site file names what tells of it."""
-    if not app.site.file.machines[app.machine].hardware:
-        return
-    watch = HardwareWatch(app, shell, gateway, people)
-    servers.watches.append(watch)
-    people.unarmed.append(watch.unready)

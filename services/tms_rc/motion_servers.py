@@ -21,7 +21,6 @@ from tms_machine.permit import RemotePermit
 from tms_rc.goal_check import GoalCheck
 from tms_rc.motion_goals import duration, reason_of, with_reason
 from tms_rc.shell import Shell
-from tms_rc.watches import Watch
 from tms_reason.reason import Reason
 from tms_ros.client import AnyCall, AnyPeer
 from tms_ros.goals import Ended, Outcome
@@ -30,6 +29,7 @@ from tms_runtime.app import App
 
 if TYPE_CHECKING:  # its libraries are loaded only where a site has areas
     from tms_rc.area_watch import AreaWatch
+    from tms_rc.watches import Watch
 
 CLOSING_CHECK_PERIOD = 1.0  # s
 CANCELED = 0  # error code of a goal that its client has cancelled

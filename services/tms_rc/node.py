@@ -11,7 +11,7 @@ from tms_decision.permit_link import LEASE
 from tms_machine.border import Controls, motions
 from tms_machine.facts import facts_of
 from tms_machine.permit import Permit
-from tms_rc import areas, hardware_watch, permits, relayed_goals
+from tms_rc import areas, permits, relayed_goals, watch_setup
 from tms_rc.claim import Claim
 from tms_rc.disk import Disk
 from tms_rc.holder import Holder
@@ -24,7 +24,6 @@ from tms_rc.receipts import Receipts
 from tms_rc.shell import Shell
 from tms_rc.state_topic import StateTopic
 from tms_rc.stop_receipt import ReceiptTopic
-from tms_rc.watches import WatchTopic
 from tms_runtime.app import App
 
 GATEWAY = bytes([255]) * 16  # the goal in the gateway's own permit: it stands behind the machine itself
@@ -77,10 +76,7 @@ def _serve(app: App, claim: Claim) -> None:
     for motion in motions(border):
         servers.serve(motion, getattr(border, motion.field))
     people = People(app, shell, border)
-    areas.look_for_intruders(app, gateway, servers, people)
-    hardware_watch.begin(app, shell, gateway, servers, people)
-    if servers.watches:
-        WatchTopic(app, servers.watches)
+    watch_setup.begin(app, shell, gateway, servers, people)
     relayed_goals.watch(app, servers)
     app.ros.on_executor(lambda: permits.listen(app, shell))  # no callback may come before all of them exist
     _stand_by_goals(app)

@@ -207,7 +207,7 @@ def _scenes(app: FastAPI, client: "SiteClient", site: Site) -> None:
 
     @app.get("/api/areas", summary="The enabled areas, as a gateway holds its machine in them")
     def areas() -> EnabledAreas:
-        return client.areas()
+        return client.watching.areas()
 
     @app.get("/api/machines/{name}/scene", summary="What the planner of an excavator plans among now",
              responses=problems(404, 409, 503))  # fmt: skip

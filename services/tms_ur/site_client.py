@@ -44,7 +44,6 @@ from tms_ur.reason_view import of_error, of_line, view
 from tms_ur.reasons import UnknownProcess
 from tms_ur.run_calls import CALL_LIMIT, RunCalls, checked
 from tms_ur.scene_models import Scene, scene
-from tms_ur.watch_models import EnabledAreas
 from tms_ur.watching import Watching
 
 PROCESS_LIMIT = 15.0  # s for a process to end and to be started
@@ -57,8 +56,7 @@ class SiteClient(RunCalls):
         super().__init__(ros)
         names = list(site.file.machines)
         self.board = Board(names)
-        self._watching = Watching(ros, site, self.board)
-        self.shared = PlaceClient(ros, self.board)
+        self.watching, self.shared = Watching(ros, site, self.board), PlaceClient(ros, self.board)
         self._inputs: tuple[list[InputState], float] | None = None  # read and replaced in one step
         self._places = Places(ros, {name: site.border(name) for name in names})
         for name in names:
@@ -211,10 +209,6 @@ class SiteClient(RunCalls):
             TmsError: something of it is not known, or the planner is away.
         """
         return scene(machine, self._ask(GetScene, f"/{machine}/rp/get_scene"))
-
-    def areas(self) -> EnabledAreas:
-        """The enabled areas, as a gateway tells them."""
-        return self._watching.areas()
 
     # processes
 

@@ -2,13 +2,16 @@
 
 import click
 
+from tms_areas.trackers import trackers_flaw
 from tms_cli import area_sets, session
 from tms_cli.words import say
 from tms_config.config import load_site
 from tms_config.processes import table
+from tms_config.yaml_file import located
 from tms_ground.settings import ground_of, soils_of
 from tms_hardware.settings import hardware_of
-from tms_machine.sensing import load_sensing
+from tms_machine.sensing import load_sensing, sensing_path
+from tms_reason.errors import ConfigError
 from tms_ur.address import certificate, users
 
 
@@ -32,9 +35,11 @@ def command(chosen: str | None, as_json: bool) -> None:
         hardware_of(site, machine)
     if (ground := ground_of(site)) is not None:
         soils_of(site, ground)
-    if site.area_files:
-        area_sets.configured(site)
-    inputs = load_sensing(site).inputs
+    unmanned = [one.id for one in area_sets.configured(site).of("unmanned")] if site.area_files else []
+    sensing = load_sensing(site)
+    if (flaw := trackers_flaw(sensing.trackers, unmanned)) is not None:
+        raise ConfigError(located(sensing_path(site), flaw, "trackers"))
+    inputs = sensing.inputs
     if as_json:
         session.show_json(
             {

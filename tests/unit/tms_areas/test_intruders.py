@@ -12,11 +12,13 @@ from tms_areas.reasons import (
     IntruderInside,
     IntruderNear,
     PlaceNoNumber,
+    TrackerOfNoArea,
     TrackerSilent,
+    TrackersNeedAreas,
     TrackerUnheard,
     TrackerUnreadable,
 )
-from tms_areas.trackers import SPEED, Tracker
+from tms_areas.trackers import SPEED, Tracker, trackers_flaw
 from tms_areas.zones import Zones
 
 CAMERA = Tracker(kind="person", topic="camera")
@@ -162,6 +164,19 @@ def test_that_a_gate_was_open_counts_also_when_the_gate_is_silent_since() -> Non
     site.gate("gate", 0.1, False)
     found = look(site, 5.0, EAST)
     assert isinstance(found.stop, TrackerSilent) and isinstance(found.passed, GateOpened)
+
+
+def test_a_gate_to_an_area_that_is_not_enabled_counts_everywhere() -> None:
+    lost = Tracker(kind="gate", topic="gate", type="std_msgs/msg/Bool", areas=("south",))
+    site = Intruders({"gate": lost}, 0.0)
+    site.gate("gate", 0.0, True)
+    assert look(site).stop is not None and look(site, here=EAST).stop is not None
+
+
+def test_trackers_that_do_not_fit_the_areas_are_told() -> None:
+    assert trackers_flaw({}, ()) is None and trackers_flaw({"gate": GATE, "eye": CAMERA}, ("east", "west")) is None
+    assert trackers_flaw({"eye": CAMERA}, ()) == TrackersNeedAreas(("eye",))
+    assert trackers_flaw({"gate": GATE}, ("west",)) == TrackerOfNoArea("gate", "east", ("west",))
 
 
 @pytest.mark.parametrize(

@@ -9,6 +9,7 @@ import pytest
 import yaml
 
 from conftest import site_data
+from tms_areas.reasons import TrackersNeedAreas
 from tms_cli.commands import check
 from tms_config import config
 from tms_config.reasons import BadConfig, NoMover, NoResponse, NoSourceFacts, NoTopic
@@ -40,6 +41,22 @@ def test_a_site_whose_ground_is_wrong(checked: Callable[[dict[str, Any]], Any], 
     site = tmp_path / "site.yaml"
     site.write_text(site.read_text() + "ground: {area: [0, 0, 1]}\n")
     assert "ground.area" in str(checked(MODEL).exception)
+
+
+def test_a_site_whose_trackers_are_wrong(checked: Callable[[dict[str, Any]], Any], tmp_path: Path) -> None:
+    (tmp_path / "sensing.yaml").write_text("trackers: {eye: {kind: person, topic: eye}}")
+    site = tmp_path / "site.yaml"
+    site.write_text(site.read_text() + "sensing: sensing.yaml\n")
+    found = checked(MODEL).exception
+    assert found.reason.find(TrackersNeedAreas) is not None
+
+
+def test_a_site_whose_hardware_is_wrong(checked: Callable[[dict[str, Any]], Any], tmp_path: Path) -> None:
+    site = tmp_path / "site.yaml"
+    given = yaml.safe_load(site.read_text())
+    given["machines"]["zx"]["hardware"] = {"engine": {"topic": "rpm", "above": "fast"}}
+    site.write_text(yaml.safe_dump(given))
+    assert "machines.zx.hardware.engine.above" in str(checked(MODEL).exception)
 
 
 def changed(change: Callable[[Any], object]) -> dict[str, Any]:

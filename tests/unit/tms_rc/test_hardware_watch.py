@@ -12,7 +12,7 @@ from tms_config.config import load_site
 from tms_decision.gateway.events import Event, Manual
 from tms_decision.reasons import ProcessLost
 from tms_hardware.reasons import EmergencyStopPressed, LeverLocked, SwitchedToManual
-from tms_rc import hardware_watch
+from tms_rc import watch_setup
 from tms_rc.hardware_watch import LATE
 from tms_rc.motion_servers import MotionServers
 from tms_rc.reasons import HardwareLate
@@ -39,14 +39,17 @@ class Rig:
         self.gateway: Any = SimpleNamespace(latch=SimpleNamespace(cause=None), by_hand=None, active=None)
         self.app: Any = SimpleNamespace(site=load_site(str(file)), machine="zx200", ros=self)
         self.people: Any = SimpleNamespace(stop=self.stop, unarmed=[])
-        self.servers: Any = SimpleNamespace(watches=[])
+        self.servers: Any = SimpleNamespace(watches=[], areas=None)
         shell: Any = SimpleNamespace(happened=self.events.append)
-        hardware_watch.begin(self.app, shell, self.gateway, self.servers, self.people)
+        watch_setup.begin(self.app, shell, self.gateway, self.servers, self.people)
         (self.watch,) = self.servers.watches
 
     def stop(self, cause: Reason) -> None:
         self.stops.append(cause)
         self.gateway.latch.cause = cause
+
+    def publisher(self, *_: Any, **__: Any) -> None:
+        pass
 
     def sample_arrivals(self, _type: Any, topic: str, *_: Any, **__: Any) -> Any:
         waiting = self.waiting[topic] = []

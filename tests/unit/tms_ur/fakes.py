@@ -44,6 +44,16 @@ class WrongLine(Reason, text="line {line}: there is no node '{node}'", action=ED
     node: str
 
 
+class FakeWatching:
+    """One area that a person has enabled."""
+
+    def areas(self) -> EnabledAreas:
+        ring = [[-5.0, -5.0], [20.0, -5.0], [20.0, 20.0], [-5.0, 20.0], [-5.0, -5.0]]
+        geometry = {"type": "Polygon", "coordinates": [ring]}
+        yard = {"type": "Feature", "properties": {"id": "yard", "type": "unmanned"}, "geometry": geometry}
+        return EnabledAreas(id="9f", by="a person", areas={"type": "FeatureCollection", "features": [yard]})
+
+
 class FakePlaces:
     """The keeper of shared places."""
 
@@ -60,6 +70,7 @@ class FakeSiteClient:
 
     def __init__(self) -> None:
         self.board = Board(["zx200"])
+        self.watching = FakeWatching()
         self.error: TmsError | None = None
         self.calls: list[tuple[object, ...]] = []
         self.shared = FakePlaces(self)
@@ -107,13 +118,6 @@ class FakeSiteClient:
     def parameter_history(self, model_name: str, record_name: str, limit: int) -> list[Change]:
         self._called("parameter_history", model_name, record_name, limit)
         return [Change(stamp=NOON, source="sensing", values={"d": float("nan"), "s": "3"})]
-
-    def areas(self) -> EnabledAreas:
-        self._called("areas")
-        ring = [[-5.0, -5.0], [20.0, -5.0], [20.0, 20.0], [-5.0, 20.0], [-5.0, -5.0]]
-        geometry = {"type": "Polygon", "coordinates": [ring]}
-        yard = {"type": "Feature", "properties": {"id": "yard", "type": "unmanned"}, "geometry": geometry}
-        return EnabledAreas(id="9f", by="a person", areas={"type": "FeatureCollection", "features": [yard]})
 
     def scene(self, machine: str) -> Scene:
         self._called("scene", machine)
