@@ -35,6 +35,7 @@ from tms_reason.errors import RosError, TmsError
 from tms_reason.reason import Reason
 from tms_ros.node import Ros
 from tms_ur import messages
+from tms_ur.answers import checked
 from tms_ur.area_client import let_back
 from tms_ur.board import Board
 from tms_ur.data_models import Change, Record, Sensing
@@ -42,7 +43,7 @@ from tms_ur.models import AddedTemplate, Event, Host, Place, Rearmed, Receipt, R
 from tms_ur.place_client import PlaceClient
 from tms_ur.reason_view import of_error, of_line, view
 from tms_ur.reasons import UnknownProcess
-from tms_ur.run_calls import CALL_LIMIT, RunCalls, checked
+from tms_ur.run_calls import CALL_LIMIT, RunCalls
 from tms_ur.scene_models import Scene, scene
 from tms_ur.watching import Watching
 
