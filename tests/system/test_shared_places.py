@@ -12,7 +12,7 @@ from collections.abc import Iterator
 import pytest
 from tms_msg_areas.msg import Place, Places
 
-from conftest import NO_CONSOLE, Mesh, mesh_apart, node_in, wait_until
+from conftest import CLI, NO_CONSOLE, Mesh, mesh_apart, node_in, wait_until
 from tms_config.config import load_site
 from tms_machine.places import Places as Poses
 
@@ -56,7 +56,8 @@ def mesh(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Mesh]:
         (folder / "yard.geojson").write_text(document())
         made.tms("up", expect=None)
         try:
-            made.tms("areas", "enable", "--yes", "--by", "a person")
+            enable = ("areas", "enable", "--yes", "--by", "a person")
+            wait_until(lambda: made.tms(*enable, expect=None).returncode == 0, 90, "both gateways serve", every=CLI)
             made.arm()
             for name, lane in LANES.items():
                 for end, (x, yaw) in ENDS.items():
