@@ -7,13 +7,13 @@ it runs out, and the machine is held where it would go on in such an area.
 import threading
 from collections.abc import Callable, Mapping, Sequence
 
-from tms_msg_areas.msg import Places
+from tms_msg_areas.msg import Place, Places
 from tms_msg_areas.srv import ReportPlaces
 
 from tms_areas.areas import Area, AreaSet
 from tms_areas.fix import Seen
 from tms_areas.guard import Guard
-from tms_areas.reach import Place
+from tms_areas.reach import Place as Pose
 from tms_areas.release import corners_of, needed, straight, touched
 from tms_config.clock import monotonic, unix_ns
 from tms_machine.asking import ask
@@ -84,13 +84,14 @@ class PlaceWatch:
     # goals
 
     def judged(
-        self, guards: Guards, seen: Seen, joints: Mapping[str, float], way: Sequence[Place], told: bool
+        self, guards: Guards, seen: Seen, joints: Mapping[str, float], way: Sequence[Pose], told: bool
     ) -> Reason | None:
         """Why tracks must not go a way; PlacesNeeded, if it lacks nothing but these. As Guard.may_drive."""
         with self._lock:
             areas, inside = self._areas, self._inside
             lost = self._own.lost(monotonic())
-            usable, evacuates = self._own.open - (lost - inside), self._own.evacuates
+            usable = self._own.open - ((lost | self._own.leaving) - inside)
+            evacuates = self._own.evacuates
         stuck = inside & lost
         if stuck - evacuates:
             return LeaseOver(self._app.machine, min(stuck - evacuates))
@@ -111,11 +112,14 @@ class PlaceWatch:
     # the keeper
 
     def _heard(self, told: Places) -> None:
-        """Report soon what the keeper waits for."""
+        """Report soon what the keeper waits for; what nobody wants any more is no way for the next goal."""
         machine = self._app.machine
+        mine = {one.name: one.state for one in told.places if one.holder == machine}
+        left = frozenset(name for name, state in mine.items() if state == Place.LEAVING)
         with self._lock:
-            mine = {one.name: one.state for one in told.places if one.holder == machine}
-            if any(state == told.places[0].GRANTED for state in mine.values()) or mine.keys() != self._own.open:
+            news = left - self._own.leaving or any(state in (Place.GRANTED, Place.REVOKED) for state in mine.values())
+            self._own.leaving = (self._own.leaving | left) - (mine.keys() - left)
+            if news or mine.keys() != self._own.open:
                 self._due = 0.0
 
     def _report(self) -> None:

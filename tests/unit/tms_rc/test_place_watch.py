@@ -122,6 +122,17 @@ def test_a_place_that_nobody_wants_is_given_back_outside(gateway: Gateway) -> No
     assert gateway.watch.open == frozenset() and list(gateway.report().in_use) == []
 
 
+def test_what_nobody_wants_any_more_is_no_way_for_the_next_goal(gateway: Gateway) -> None:
+    gateway.report(held=["road", "pit"])
+    gateway.look(40.0)
+    assert gateway.go(0.0, 40.0) is None
+    gateway.watch._heard(Places(places=[Place(name="road", state=Place.LEAVING, holder="m")]))
+    assert gateway.go(0.0, 40.0) == PlacesNeeded("m", ("road",))
+    assert gateway.watch._due == 0.0, "the keeper waits for its word"
+    gateway.watch._heard(Places(places=[Place(name="road", state=Place.HELD, holder="m")]))
+    assert gateway.go(0.0, 40.0) is None, "it is wanted again"
+
+
 def test_without_the_keeper_a_lease_ends_and_the_tracks_are_held(gateway: Gateway) -> None:
     gateway.report(held=["road", "pit"])
     gateway.silent = True
