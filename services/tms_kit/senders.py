@@ -7,8 +7,11 @@ from tms_machine.leaf_forms import misfit
 from tms_machine.permit import RemotePermit
 from tms_machine.reasons import BorderLost
 from tms_reason.reason import Reason
+from tms_ros.client import AnyPeer
 from tms_ros.server import AnyGoal
 from tms_runtime.app import App
+
+GONE = 2.0  # s without the scheduler's permit until a goal that waits ends: on a full PC, it lapses for a moment
 
 
 class Senders:
@@ -29,6 +32,7 @@ class Senders:
         self._permits: dict[str, RemotePermit] = {}  # made with the first goal that needs it: each wakes the process
         self._goal: AnyGoal | None = None
         self._stood = False  # the scheduler was seen to stand behind the run of this goal
+        self._peers: list[AnyPeer] = []  # of the scheduler
 
     def refusal(self, goal: AnyGoal) -> Reason | None:
         """Why a goal is not begun; None for every goal of a run."""
@@ -47,6 +51,11 @@ class Senders:
         elif self._site.other_form(self._app.machine):
             self._see(f"if_{self._subtask}")
 
+    def add(self, peer: AnyPeer) -> None:
+        """Let the open calls of a peer that the scheduler serves end with it."""
+        if peer not in self._peers:
+            self._peers.append(peer)
+
     def _see(self, process: str) -> None:
         if process in self._permits:
             self._changed(self._permits[process])
@@ -62,11 +71,30 @@ class Senders:
             if permit.lost(goal.uuid):
                 self._end(goal, BorderLost(f"{self._app.machine}:if"))
             return
-        behind = parse(permit.goal) if permit.alive else None
-        if behind is not None and behind.run == owner.run:
+        behind = self._behind(permit)
+        if behind == owner.run:
             self._stood = True
+            for peer in self._peers:
+                peer.mark_alive()
+        elif self._stood and behind is not None:  # a run after this one
+            self._lose(goal)
         elif self._stood:
-            self._end(goal, ProcessEnded("tms:ts"))
+            self._app.ros.after(GONE, lambda: self._judge(permit, goal, owner.run))
+
+    @staticmethod
+    def _behind(permit: RemotePermit) -> int | None:
+        """The run that a scheduler stands behind."""
+        owner = parse(permit.goal) if permit.alive else None
+        return None if owner is None else owner.run
+
+    def _judge(self, permit: RemotePermit, goal: AnyGoal, run: int) -> None:
+        if self._goal is goal and self._behind(permit) != run:
+            self._lose(goal)
+
+    def _lose(self, goal: AnyGoal) -> None:
+        for peer in self._peers:
+            peer.mark_lost()
+        self._end(goal, ProcessEnded("tms:ts"))
 
     def _end(self, goal: AnyGoal, why: Reason) -> None:
         self._goal = None

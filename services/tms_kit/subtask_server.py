@@ -196,9 +196,9 @@ class _Server:
         """Begin with the first goal: the gateway's lease, ten times a second, must not wake an unused process."""
         if not self._watches:
             self._watches = {
-                name: watch_server(self._app.ros, self._app.pulse, self._app.machine, name)
-                for name in ("rc", "rp", *(["ts"] if self._kind.waits else []))
+                name: watch_server(self._app.ros, self._app.pulse, self._app.machine, name) for name in ("rc", "rp")
             }
+            self._watches["ts"] = self._senders.add
         return self._watches
 
     def _read(self, model_name: str, record_name: str, max_age: float) -> dict[str, Value]:

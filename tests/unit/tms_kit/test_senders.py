@@ -1,5 +1,6 @@
 """Goals of a subtask: which foreign ones are begun, and which goals end with the process that has sent them."""
 
+from collections.abc import Callable
 from types import SimpleNamespace
 from typing import Any
 
@@ -26,6 +27,21 @@ class Goal:
         self.cancels += 1
 
 
+class Question:
+    """A peer of the scheduler."""
+
+    lost = False
+
+    def mark_lost(self) -> None:
+        self.lost = True
+
+    def mark_alive(self) -> None:
+        self.lost = False
+
+
+later: list[Callable[[], None]] = []  # what the executor does when its time has come
+
+
 class Sender:
     """The permit of a process that has sent the goal."""
 
@@ -46,11 +62,13 @@ class Sender:
 
 def goals(monkeypatch: pytest.MonkeyPatch, form: str, *, waits: bool = False) -> Senders:
     Sender.made = []
+    later.clear()
     monkeypatch.setattr(senders, "RemotePermit", Sender)
     monkeypatch.setattr(senders, "misfit", lambda *_, servers: Foreign("misread"))
     site = SimpleNamespace(other_form=lambda _: form)
     app: Any = SimpleNamespace(
-        site=site, machine="zx200", process=SimpleNamespace(action="dig"), ros=None, pulse=None,
+        site=site, machine="zx200", process=SimpleNamespace(action="dig"), pulse=None,
+        ros=SimpleNamespace(after=lambda _, step: later.append(step)),
         log=structlog.stdlib.get_logger("test"),
     )  # fmt: skip
     return Senders(app, waits=waits)
@@ -91,8 +109,8 @@ def test_goals_that_no_border_passes_are_not_watched(monkeypatch: pytest.MonkeyP
     assert Sender.made == []
 
 
-@pytest.mark.parametrize("then", [(SCHEDULED, False), (Owner(8).goal_id(b"ts1"), True), (NOBODY, False)])
-def test_a_goal_that_waits_ends_with_its_scheduler(monkeypatch: pytest.MonkeyPatch, then: tuple[bytes, bool]) -> None:
+def waiting(monkeypatch: pytest.MonkeyPatch) -> tuple[Senders, Goal, Sender]:
+    """A goal that waits, and the permit of its scheduler, which stands behind it."""
     goal = Goal(OF_A_RUN)
     whole: Any = goal
     watched = goals(monkeypatch, "", waits=True)
@@ -101,8 +119,31 @@ def test_a_goal_that_waits_ends_with_its_scheduler(monkeypatch: pytest.MonkeyPat
     assert scheduler.process == "ts"
     scheduler.be(SCHEDULED, alive=False)  # not heard of yet
     scheduler.be(SCHEDULED, alive=True)
-    assert goal.cancels == 0
+    return watched, goal, scheduler
+
+
+@pytest.mark.parametrize("then", [(SCHEDULED, False), (NOBODY, False)])
+def test_a_goal_that_waits_ends_with_its_scheduler(monkeypatch: pytest.MonkeyPatch, then: tuple[bytes, bool]) -> None:
+    watched, goal, scheduler = waiting(monkeypatch)
+    question: Any = Question()
+    watched.add(question)
     scheduler.be(*then)
+    assert (goal.cancels, question.lost) == (0, False)
+    later.pop()()
+    assert (goal.cancels, question.lost) == (1, True)
+
+
+def test_a_scheduler_that_is_back_in_time_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    _, goal, scheduler = waiting(monkeypatch)
+    scheduler.be(SCHEDULED, alive=False)
+    scheduler.be(SCHEDULED, alive=True)
+    later.pop()()
+    assert goal.cancels == 0
+
+
+def test_another_run_ends_it_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    _, goal, scheduler = waiting(monkeypatch)
+    scheduler.be(Owner(8).goal_id(b"ts1"), alive=True)
     assert goal.cancels == 1
 
 
@@ -116,4 +157,5 @@ def test_the_next_goal_is_seen_by_the_permit_that_is_there(monkeypatch: pytest.M
     watched.watch(None)
     watched.watch(whole[1])
     scheduler.be(SCHEDULED, alive=False)
+    later.pop()()
     assert (first.cancels, second.cancels, len(Sender.made)) == (0, 1, 1)

@@ -62,7 +62,7 @@ class FakeSurroundings:
     unfit: Reason | None = None
     roads: Roads = NO_ROADS
 
-    def read(self) -> None:
+    def read(self, here: object) -> None:
         if self.unfit is not None:
             raise SubtaskFailed(self.unfit)
 

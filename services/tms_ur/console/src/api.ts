@@ -2073,7 +2073,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "text/event-stream": components["schemas"]["ReasonView"];
+                    "application/json": components["schemas"]["ReasonView"];
                 };
             };
             /** @description log in first */
@@ -2082,7 +2082,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "text/event-stream": components["schemas"]["ReasonView"];
+                    "application/json": components["schemas"]["ReasonView"];
                 };
             };
             /** @description a value is wrong */
@@ -2091,7 +2091,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "text/event-stream": components["schemas"]["ReasonView"];
+                    "application/json": components["schemas"]["ReasonView"];
                 };
             };
             /** @description a module of the site is away or does not answer */
@@ -2100,7 +2100,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "text/event-stream": components["schemas"]["ReasonView"];
+                    "application/json": components["schemas"]["ReasonView"];
                 };
             };
         };
