@@ -48,7 +48,9 @@ class Guard:
 
     def pace(self, seen: Seen, joints: Mapping[str, float]) -> float:
         """How fast the tracks may go now [m/s]; infinite where nothing limits them."""
-        return math.inf if seen.motion is None else self.law.pace(self._silhouette.body([joints]), seen.motion)
+        if seen.motion is None or not self.law.paces:  # asked at each look: no geometry for nothing
+            return math.inf
+        return self.law.pace(self.body(joints), seen.motion)
 
     def may_drive(self, seen: Seen, joints: Mapping[str, float], way: Sequence[Place], told: bool) -> Reason | None:
         """Why tracks must not go to the last of some places by way of the others.

@@ -93,9 +93,14 @@ class Law:
         """What a machine covers where it is, with what its pose may be off."""
         return covered_by(body, place_of(motion), 0.0, motion.off)
 
+    @property
+    def paces(self) -> bool:
+        """Whether anything may limit the speed of the tracks."""
+        return self.tracks is not None and bool(self._limits)
+
     def pace(self, body: Body, motion: Motion) -> float:
         """How fast tracks may go [m/s]: as a speed limit says that is nearer than they need to slow down."""
-        if self.tracks is None or not self._limits:
+        if not self.paces:
             return math.inf
         near = shapely.dwithin(self._limited, shape_of(body, motion), self._slowing)
         return min((HEEDED * (one.speed or 0.0) for one, slow in zip(self._limits, near, strict=True) if slow),
