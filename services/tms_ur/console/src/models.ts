@@ -4,6 +4,7 @@ import type { components } from "./api";
 type Models = components["schemas"];
 export type ActiveRun = Models["ActiveRun"];
 export type Checked = Models["Checked"];
+export type Event = Models["Event"];
 export type Finding = Models["Finding"];
 export type Joint = Models["Joint"];
 export type Machine = Models["Machine"];
