@@ -1114,6 +1114,12 @@ export interface components {
              * @default 0
              */
             memory: number;
+            /**
+             * On Demand
+             * @description it runs only while it is needed: stopped is no fault
+             * @default false
+             */
+            on_demand: boolean;
             detail?: components["schemas"]["ReasonView"] | null;
         };
         /**
