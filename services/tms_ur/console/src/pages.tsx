@@ -13,6 +13,7 @@ import { texts } from "./texts";
 // The board comes with the frame, others when they are opened.
 const REACT: Record<string, ComponentType<{ rest: string }>> = {
   board: Board,
+  map: lazy(() => import("./map/map_page")),
   tree: lazy(() => import("./tree/tree_page")),
 };
 
