@@ -12,9 +12,9 @@ class Claim:
     machine: str
     wants: frozenset[str]  # runs that want it for the machine; "" is the machine itself, for a goal; none: it leaves
     since: float  # s since 1970
-    granted: int = 0  # revision of the book from which on some run has wanted it all the time
     confirmed: bool = False  # its gateway lets the lease count, and knows of `granted`
     revoked: str = ""  # by whom
+    granted: int = 0  # revision of the book from which on some run has wanted it all the time
 
     @property
     def leaving(self) -> bool:
@@ -86,8 +86,8 @@ def of_document(found: Mapping[str, Any]) -> Book:
     """
     claims = {
         str(one["place"]): Claim(
-            str(one["machine"]), frozenset(map(str, one["wants"])), float(one["since"]), int(one["granted"]),
-            bool(one["confirmed"]), str(one["revoked"]),
+            str(one["machine"]), frozenset(map(str, one["wants"])), float(one["since"]), bool(one["confirmed"]),
+            str(one["revoked"]), int(one["granted"]),
         )
         for one in found["claims"]
     }  # fmt: skip
