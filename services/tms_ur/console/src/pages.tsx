@@ -14,6 +14,7 @@ import { texts } from "./texts";
 const REACT: Record<string, ComponentType<{ rest: string }>> = {
   board: Board,
   history: lazy(() => import("./history/history_page")),
+  map: lazy(() => import("./map/map_page")),
   tasks: lazy(() => import("./tasks/tasks_page")),
   tree: lazy(() => import("./tree/tree_page")),
 };
