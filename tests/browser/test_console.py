@@ -448,8 +448,8 @@ def test_processes_logs_and_restart(page: Page, address: str, mesh: Mesh) -> Non
 
 
 def test_the_site_shows_place_and_arm(page: Page, address: str, mesh: Mesh) -> None:
-    open_page(page, address, "site")
-    expect(page.locator("#map [data-machine=zx200]")).to_have_count(1)
+    open_page(page, address, "map")
+    expect(page.locator("#map_box [data-machine=zx200]")).to_have_count(1)
     expect(page.locator("#arms svg")).to_have_count(1)
     points = page.locator("#arms .arm").get_attribute("points")
     assert points

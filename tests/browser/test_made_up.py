@@ -122,8 +122,8 @@ def test_a_field_of_a_run_that_nobody_has_translated_is_shown(page: Page, addres
 
 def test_an_old_place_is_marked(page: Page, address: str, yard: Yard) -> None:
     yard.board.put_place("ic120", Place(x=1.0, y=2.0, yaw=0.0))
-    page.goto(f"{address}/#site")
-    mark = page.locator("#map [data-machine=ic120]")
+    page.goto(f"{address}/#map")
+    mark = page.locator("#map_box [data-machine=ic120]")
     expect(mark).to_have_attribute("class", "machine standing")
     expect(page.locator("#unplaced li")).to_have_text(["zx200: no position has been heard."])
     yard.now += 7
