@@ -10,13 +10,13 @@ import {
   ReactFlowProvider,
   useReactFlow,
 } from "@xyflow/react";
-import { useEffect, useMemo, useState } from "react";
+import { type ReactNode, useEffect, useMemo, useState } from "react";
 import { useTranslation } from "react-i18next";
 import type { Tree } from "../models";
 import { Details } from "./details";
 import { HEIGHT, type Placed, placed, WIDTH } from "./layout";
 import { type BoxNode, NodeBox, WORDS } from "./node_box";
-import { type NodeState, nodesOf, openPaths, stateOf } from "./shape";
+import { type NodeState, nodesOf, openPaths, stateOf, type TreeNode } from "./shape";
 
 const KINDS = { box: NodeBox };
 // Told and not measured, since nodes outside of the picture are not drawn: lines go to them, and the overview has them.
@@ -34,6 +34,7 @@ interface Props {
   digits: string; // state of every node
   leaf: string; // path of the one that works or waits
   last: Map<number, NodeState>; // of each node by its index: the last state that was not idle
+  facts: (node: TreeNode) => ReactNode; // what else is known of the node that is chosen
 }
 
 export function TreeFlow(props: Props) {
@@ -44,7 +45,7 @@ export function TreeFlow(props: Props) {
   );
 }
 
-function Flow({ tree, digits, leaf, last }: Props) {
+function Flow({ tree, digits, leaf, last, facts }: Props) {
   const { t } = useTranslation();
   const [byHand, setByHand] = useState(new Map<string, boolean>());
   const [chosen, setChosen] = useState("");
@@ -85,6 +86,7 @@ function Flow({ tree, digits, leaf, last }: Props) {
     setChosen(path);
     setByHand((before) => (nodes.get(path)?.children.length ? new Map(before).set(path, !open.has(path)) : before));
   };
+  const looked = nodes.get(chosen);
   const all = () => setByHand(new Map([...nodes.keys()].map((path) => [path, true])));
   return (
     <div className="tree_and_details">
@@ -110,7 +112,9 @@ function Flow({ tree, digits, leaf, last }: Props) {
           </ReactFlow>
         </div>
       </div>
-      <Details node={nodes.get(chosen)} state={stateOf(nodes.get(chosen) ?? { index: -1 }, digits)} />
+      <Details node={looked} state={stateOf(looked ?? { index: -1 }, digits)}>
+        {looked && facts(looked)}
+      </Details>
     </div>
   );
 }
