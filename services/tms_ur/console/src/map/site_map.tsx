@@ -1,0 +1,122 @@
+// The map, from above or in 3D, and what is chosen about it.
+
+import { lazy, Suspense, useMemo, useRef, useState } from "react";
+import { useTranslation } from "react-i18next";
+import type { SiteMachine, State } from "../models";
+import { get } from "../server";
+import { useList } from "../use_list";
+import { areasOf } from "./areas";
+import { placesOf } from "./goals";
+import { ZOOM } from "./hands";
+import { Picture, type Scene } from "./picture";
+import { trailsOf } from "./trails";
+import { useView } from "./use_view";
+import { gridStep } from "./view";
+
+const Space = lazy(() => import("./space/space"));
+
+const readAreas = () => get("/api/areas");
+const readRecords = () => get("/api/parameters");
+
+interface Props {
+  state: State;
+  bodies: ReadonlyMap<string, SiteMachine>;
+  inSpace: boolean;
+}
+
+export function SiteMap({ state, bodies, inSpace }: Props) {
+  const { t } = useTranslation();
+  const { list: enabled, error } = useList(readAreas);
+  const records = useList(readRecords).list;
+  const [follow, setFollow] = useState("");
+  const [all, setAll] = useState(false);
+  const [design, setDesign] = useState(false);
+  const box = useRef<HTMLElement>(null);
+  const areas = useMemo(() => areasOf(enabled), [enabled]);
+  const scene = useMemo((): Scene => {
+    const places = placesOf(records ?? [], state.runs).filter((one) => all || one.goal);
+    return { state, bodies, areas, records: places, trails: trailsOf(state.machines) };
+  }, [state, bodies, areas, records, all]);
+  const place = state.machines.find((one) => one.name === follow)?.place;
+  // nothing is fitted before the areas are known: the view is not to jump when they come
+  const known = enabled !== null || error !== null;
+  const { view, size, zoom, fit } = useView(
+    box,
+    known ? outermost(scene) : [],
+    place ? [place.x, place.y] : undefined,
+    () => setFollow(""),
+    () => {},
+  );
+  return (
+    <>
+      <section className="bar" aria-label={t("map_view")}>
+        <a className="button" href={inSpace ? "#map" : "#map/3d"}>
+          {t(inSpace ? "map_2d" : "map_3d")}
+        </a>
+        {!inSpace && <Zooms zoom={zoom} fit={fit} />}
+        <label>
+          {t("follow")}{" "}
+          <select id="follow" value={follow} onChange={(event) => setFollow(event.target.value)}>
+            <option value="">{t("follow_none")}</option>
+            {state.machines.map((one) => (
+              <option key={one.name}>{one.name}</option>
+            ))}
+          </select>
+        </label>
+        <Choice id="all_records" text={t("all_records")} chosen={all} choose={setAll} />
+        {inSpace && <Choice id="design" text={t("design_surface")} chosen={design} choose={setDesign} />}
+      </section>
+      {/* biome-ignore lint/a11y/noNoninteractiveTabindex: arrow keys move the map */}
+      <section id="map_box" className="mapbox" hidden={inSpace} ref={box} tabIndex={0} aria-label={t("map_keys")}>
+        {view && !inSpace && <Picture scene={scene} view={view} size={size} />}
+      </section>
+      {view && inSpace && (
+        <section id="space_box" className="mapbox" aria-label={t("map_3d")}>
+          <Suspense>
+            <Space scene={scene} view={view} follow={follow} design={design} />
+          </Suspense>
+        </section>
+      )}
+      {view && !inSpace && <p className="small">{t("map_note", { step: gridStep(view.scale) })}</p>}
+    </>
+  );
+}
+
+function Zooms({ zoom, fit }: { zoom: (factor: number) => void; fit: () => void }) {
+  const { t } = useTranslation();
+  return (
+    <>
+      <button type="button" aria-label={t("zoom_in")} onClick={() => zoom(ZOOM)}>
+        +
+      </button>
+      <button type="button" aria-label={t("zoom_out")} onClick={() => zoom(1 / ZOOM)}>
+        −
+      </button>
+      <button type="button" onClick={fit}>
+        {t("show_all")}
+      </button>
+    </>
+  );
+}
+
+interface ChoiceProps {
+  id: string;
+  text: string;
+  chosen: boolean;
+  choose: (chosen: boolean) => void;
+}
+
+function Choice({ id, text, chosen, choose }: ChoiceProps) {
+  return (
+    <label>
+      <input id={id} type="checkbox" checked={chosen} onChange={(event) => choose(event.target.checked)} /> {text}
+    </label>
+  );
+}
+
+/** What is to be seen at first: all that stands still or moves, and the goals. */
+function outermost({ state, areas, records }: Scene) {
+  const places = state.machines.flatMap(({ place }) => (place ? [[place.x, place.y] as const] : []));
+  const people = (state.seen ?? []).flatMap((one) => one.places.map(({ x, y }) => [x, y] as const));
+  return [...places, ...people, ...areas.flatMap((one) => one.corners), ...records.flatMap((one) => one.points)];
+}
