@@ -27,6 +27,7 @@ from tms_msg_ts.srv import CheckTask
 
 from tms_config.clock import monotonic
 from tms_config.config import Site
+from tms_config.processes import table
 from tms_decision.gateway.stops import RECEIPT_LIMIT
 from tms_machine.places import PERIOD, Places
 from tms_machine.values import to_parameters
@@ -59,6 +60,7 @@ class SiteClient(RunCalls):
         super().__init__(ros)
         names = list(site.file.machines)
         self.board = Board(names)
+        self._on_demand = {row.full for row in table(site) if not row.autostart}
         self.watching, self.shared = Watching(ros, site, self.board), PlaceClient(ros, self.board)
         self._inputs: tuple[list[InputState], float] | None = None  # read and replaced in one step
         self._places = Places(ros, {name: site.border(name) for name in names})
@@ -84,7 +86,8 @@ class SiteClient(RunCalls):
         self.board.put_runs(runs, [messages.question(asked) for asked in message.questions])
 
     def _on_processes(self, message: Processes) -> None:
-        self.board.put_host(Host(name=message.host, processes=[messages.process(row) for row in message.processes]))
+        rows = [messages.process(row, row.name in self._on_demand) for row in message.processes]
+        self.board.put_host(Host(name=message.host, processes=rows))
 
     def _on_inputs(self, message: InputStates) -> None:
         self._inputs = (list(message.inputs), monotonic())

@@ -443,7 +443,7 @@ def test_processes_logs_and_restart(page: Page, address: str, mesh: Mesh) -> Non
     page.get_by_role("button", name="Restart zx200:rp", exact=True).click()
     page.locator("#dialog_yes").click()
     expect(page.locator("#message")).to_have_text("zx200:rp was restarted.")
-    expect(page.locator("#list_processes tr", has_text="zx200:rp")).to_contain_text("Running")
+    expect(page.locator("[data-process='zx200:rp']")).to_contain_text("Running")
     mesh.wait_ready()
 
 

@@ -141,6 +141,27 @@ def test_the_processes_of_a_silent_pc_are_unknown(page: Page, address: str, yard
     expect(row).to_contain_text("Unknown---")
 
 
+def test_a_stopped_process_is_a_fault_only_where_it_should_run(page: Page, address: str, yard: Yard) -> None:
+    """And the alarm leads to its log."""
+    rows = [Process(name="zx200:st_swing", state="STOPPED", on_demand=True), Process(name="tms:db", state="STOPPED")]
+    yard.board.put_host(Host(name="pc", processes=rows))
+    page.goto(f"{address}/#system")
+    expect(page.locator("#list_processes tr")).to_contain_text(["tms:dbpc! Down", "zx200:st_swingpc■ On demand"])
+    expect(page.locator("#list_alarms li")).to_have_text(["▲ Process tms:db does not run.Log"])
+    page.get_by_role("link", name="Log").click()
+    expect(page.locator("#log_text")).to_have_text("event=started")
+    expect(page.locator("#log_text")).to_be_in_viewport()
+    page.locator("#log_filter").fill("ended")
+    expect(page.locator("#log_text")).to_be_empty()
+
+
+def test_the_history_of_a_record_is_a_plot(page: Page, address: str, yard: Yard) -> None:
+    page.goto(f"{address}/#data")
+    page.get_by_role("button", name="History of zx200/pose").click()
+    expect(page.locator("#values canvas")).to_be_visible()
+    expect(page.locator("#list_values")).to_contain_text("d: 1")
+
+
 def test_ages_are_told_by_the_clock_of_the_site(page: Page, address: str, yard: Yard) -> None:
     until = utc_now() + timedelta(seconds=300)
     asked = Question(id="q", run_id="r-1", node="0", title="Safety", text="Clear?", until=until)

@@ -1265,6 +1265,12 @@ export interface components {
              * @default 0
              */
             memory: number;
+            /**
+             * On Demand
+             * @description it runs only while it is needed: stopped is no fault
+             * @default false
+             */
+            on_demand: boolean;
             detail?: components["schemas"]["ReasonView"] | null;
         };
         /**
