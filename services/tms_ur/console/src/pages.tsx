@@ -13,6 +13,7 @@ import { texts } from "./texts";
 // The board comes with the frame, others when they are opened.
 const REACT: Record<string, ComponentType<{ rest: string }>> = {
   board: Board,
+  editor: lazy(() => import("./editor/editor_page")),
   history: lazy(() => import("./history/history_page")),
   tasks: lazy(() => import("./tasks/tasks_page")),
   tree: lazy(() => import("./tree/tree_page")),
@@ -28,7 +29,7 @@ export function Pages() {
   const { t } = useTranslation();
   const address = useSyncExternalStore(onHash, hash);
   const [asked = "", ...rest] = address.split("/");
-  const name = PAGE_NAMES.includes(asked) ? asked : "board";
+  const name = PAGE_NAMES.includes(asked) || asked in REACT ? asked : "board"; // the editor has no link of its own
   const New = REACT[name];
   // biome-ignore lint/correctness/useExhaustiveDependencies: the message belongs to the page that is left
   useEffect(() => () => say(""), [name]);

@@ -1,7 +1,7 @@
 // A task as its editor sees it: trees of nodes over the elements of the text.
 import { inserted } from "./edits";
 import type { Kind, NodeType, Types } from "./palette";
-import { type Element, encoded, lineAt, parse, valueIn } from "./xml";
+import { type Element, encoded, parse, valueIn } from "./xml";
 
 export interface EditNode {
   path: string; // "0" is the root of its tree, "0.1" that one's second child
@@ -129,16 +129,31 @@ export function withModel(text: string, type: NodeType | undefined): string {
   return ids.includes(type.id) ? text : inserted(text, model, place < 0 ? ids.length : place, type.model);
 }
 
-/** The node at each line of the text on which one begins. */
-export function linesOf(text: string, trees: EditTree[]): Map<number, { tree: string; path: string }> {
-  const lines = new Map<number, { tree: string; path: string }>();
+export interface At {
+  tree: string; // ID
+  path: string;
+}
+
+/** The first node that begins on each line of the text. */
+export function linesOf(text: string, trees: EditTree[]): Map<number, At> {
+  const lines = new Map<number, At>();
+  let [line, counted] = [1, 0]; // nodes come in the order of the text
   for (const tree of trees) {
     for (const node of tree.nodes.values()) {
-      const line = lineAt(text, node.element.from);
+      line += text.slice(counted, node.element.from).split("\n").length - 1;
+      counted = node.element.from;
       if (!lines.has(line)) {
         lines.set(line, { tree: tree.id, path: node.path });
       }
     }
   }
   return lines;
+}
+
+/** The next node for an arrow key: its parent, its first child, its neighbours. */
+export function neighbour(tree: EditTree, path: string, way: "up" | "down" | "left" | "right"): string {
+  const parent = parentPath(path);
+  const beside = (by: number) => (parent === "" ? "" : `${parent}.${indexIn(path) + by}`);
+  const found = { up: parent, down: path === "" ? "0" : `${path}.0`, left: beside(-1), right: beside(1) }[way];
+  return tree.nodes.has(found) ? found : path;
 }
