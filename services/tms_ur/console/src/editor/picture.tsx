@@ -11,6 +11,7 @@ import { EditBox, type EditBoxNode } from "./edit_box";
 
 const KINDS = { edit: EditBox };
 const FIT = { maxZoom: 1, minZoom: 0.3, padding: 0.1 };
+const SMALL = 12; // nodes
 
 interface Props {
   boxes: EditBoxNode[];
@@ -31,6 +32,7 @@ export function Picture(props: Props) {
 function Flow({ boxes, places, chosen, label, onChoose }: Props) {
   const { t } = useTranslation();
   const flow = useReactFlow();
+  useWhole(places.length);
   useShown(places.find(({ node }) => node.path === chosen));
   return (
     <>
@@ -68,6 +70,16 @@ function Flow({ boxes, places, chosen, label, onChoose }: Props) {
       </div>
     </>
   );
+}
+
+/** Shows all of a small tree, also when it grows. */
+function useWhole(count: number) {
+  const flow = useReactFlow();
+  useEffect(() => {
+    if (count <= SMALL) {
+      flow.fitView(FIT);
+    }
+  }, [count, flow]);
 }
 
 /** Brings a node into the picture when it is not there. */
