@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from std_msgs.msg import String
 from tms_msg_db.srv import (
     AddTask,
     AddTemplate,
@@ -62,6 +63,7 @@ class SiteClient(RunCalls):
         self.board = Board(names)
         self._on_demand = {row.full for row in table(site) if not row.autostart}
         self.watching, self.shared = Watching(ros, site, self.board), PlaceClient(ros, self.board)
+        self.palette = ""  # the nodes of trees, as XML; empty until the scheduler has told them
         self._inputs: tuple[list[InputState], float] | None = None  # read and replaced in one step
         self._places = Places(ros, {name: site.border(name) for name in names})
         for name in names:
@@ -69,6 +71,7 @@ class SiteClient(RunCalls):
             ros.subscribe(StopReceipt, f"/{name}/rc/receipts", self._on_receipt, depth=20, latched=True)
             ros.prepare(StopMachine, f"/{name}/rc/stop")
         ros.subscribe(RunStates, "/tms/runs", self._on_runs, latched=True)
+        ros.subscribe(String, "/tms/palette", self._on_palette, latched=True)
         ros.subscribe(Processes, "/tms/host/processes", self._on_processes, depth=10, latched=True)
         ros.subscribe(InputStates, "/tms/sp/inputs", self._on_inputs, latched=True)
         ros.poll_in_thread(PERIOD, self._update_places, "places")
@@ -84,6 +87,9 @@ class SiteClient(RunCalls):
     def _on_runs(self, message: RunStates) -> None:
         runs = [messages.active_run(run) for run in message.runs]
         self.board.put_runs(runs, [messages.question(asked) for asked in message.questions])
+
+    def _on_palette(self, message: String) -> None:
+        self.palette = message.data
 
     def _on_processes(self, message: Processes) -> None:
         rows = [messages.process(row, row.name in self._on_demand) for row in message.processes]

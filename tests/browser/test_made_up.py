@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import Page, expect
 
 from tms_config.clock import utc_now
@@ -14,6 +15,7 @@ from tms_decision.reasons import SoftwareStop
 from tms_reason.errors import TmsError
 from tms_reason.reason import Reason
 from tms_reason.remedies import REARM, RESUME
+from tms_ts.bt import check, palette
 from tms_ur.models import Event, Host, Place, Process, Question
 from tms_ur.reason_view import view
 from unit.tms_ur.fakes import NOON
@@ -257,3 +259,50 @@ def test_a_file_is_stored_as_a_template_under_its_name(page: Page, address: str,
     page.locator("#dialog_yes").click()
     expect(page.locator("#message")).to_have_text("Stored as template Dig.")
     assert [call for call in yard.calls if call[0] == "add_template"] == [("add_template", "Dig", text, "", True)]
+
+
+def structural(xml: str) -> tuple[list[Reason], list[Reason]]:
+    """The check of a tree as far as the tree alone tells."""
+    return [error.reason for error in check(xml).errors], []
+
+
+DRAWN = """        <Sequence>
+            <Action ID="LeafNodeZx200" model_name="zx200" subtask_name="subtask_zx200_change_pose" record_name="pose"/>
+            <Action ID="WaitForClick"/>
+            <Action ID="LeafNodeZx200" model_name="zx200" subtask_name="subtask_zx200_change_pose" record_name="pose"/>
+        </Sequence>
+"""
+
+
+def test_a_task_is_drawn_checked_and_saved(
+    page: Page, address: str, yard: Yard, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """By what is written on the page alone: three leaves, one of them by drag and one by copy and keys."""
+    monkeypatch.setattr(yard, "check_task", structural)
+    yard.palette = palette(builtin=True)
+    page.goto(f"{address}/#tasks")
+    page.get_by_role("link", name="Draw a task").click()
+    findings = page.get_by_role("region", name="Check")
+    expect(findings).to_contain_text("Errors (1)")  # the Sequence is empty
+    nodes = page.locator("[data-path]")
+    expect(nodes).to_have_text(["Sequence ✖1"])
+    page.get_by_text("zx200", exact=True).click()
+    page.get_by_role("button", name="subtask_zx200_change_pose", exact=True).click()
+    page.get_by_label("record_name").fill("pose")
+    page.get_by_label("Filter").fill("click")
+    page.get_by_role("button", name="WaitForClick").drag_to(nodes.first)
+    drawing = page.get_by_role("application", name="Drawing of the tree")
+    drawing.focus()
+    for key in ("ArrowLeft", "Control+c", "ArrowRight", "Control+v", "Control+v", "Control+z"):
+        page.keyboard.press(key)
+    expect(nodes).to_have_count(4)
+    expect(findings).to_have_text("Check: nothing to complain of.")
+    assert Axe().run(page).response["violations"] == []
+    page.get_by_label("Name of the task").fill("dig")
+    page.get_by_label("Comment on this version").fill("first")
+    page.get_by_role("button", name="Save", exact=True).click()
+    expect(page.locator("#message")).to_have_text("Stored as task 5.")
+    [(_, stored, description)] = [call for call in yard.calls if call[0] == "add_task"]
+    assert description == "dig | first"
+    assert DRAWN in str(stored)
+    assert check(str(stored)).errors == []
