@@ -48,8 +48,7 @@ def space(folder: Path) -> Figure:
 
 
 def _measured(page: Page) -> Figure:
-    page.wait_for_selector("#space[data-pictures]")
-    page.wait_for_function("document.getElementById('space').dataset.triangles > 10000")
+    page.wait_for_selector("#space[data-triangles]")
     width, height, triangles = page.evaluate(
         "(({ width, height, dataset }) => [width, height, Number(dataset.triangles)])(document.getElementById('space'))"
     )

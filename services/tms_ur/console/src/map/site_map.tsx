@@ -11,8 +11,9 @@ import { ZOOM } from "./hands";
 import { Picture, type Scene } from "./picture";
 import { trailsOf } from "./trails";
 import { useView } from "./use_view";
-import { gridStep } from "./view";
+import { fitted, gridStep } from "./view";
 
+const TYPICAL = { width: 1280, height: 720 }; // px, where the map from above has not been shown yet
 const Space = lazy(() => import("./space/space"));
 
 const readAreas = () => get("/api/areas");
@@ -47,6 +48,7 @@ export function SiteMap({ state, bodies, inSpace }: Props) {
     () => setFollow(""),
     () => {},
   );
+  const eye = view ?? (known ? fitted(outermost(scene), TYPICAL) : null);
   return (
     <>
       <section className="bar" aria-label={t("map_view")}>
@@ -70,10 +72,10 @@ export function SiteMap({ state, bodies, inSpace }: Props) {
       <section id="map_box" className="mapbox" hidden={inSpace} ref={box} tabIndex={0} aria-label={t("map_keys")}>
         {view && !inSpace && <Picture scene={scene} view={view} size={size} />}
       </section>
-      {view && inSpace && (
+      {eye && inSpace && (
         <section id="space_box" className="mapbox" aria-label={t("map_3d")}>
           <Suspense>
-            <Space scene={scene} view={view} follow={follow} design={design} />
+            <Space scene={scene} view={eye} follow={follow} design={design} />
           </Suspense>
         </section>
       )}

@@ -7,10 +7,10 @@ import {
   Group,
   Mesh,
   MeshBasicMaterial,
-  MeshLambertMaterial,
+  OctahedronGeometry,
   ShapeUtils,
-  SphereGeometry,
   Vector2,
+  Vector3,
 } from "three";
 import type { Machine, SiteMachine } from "../../models";
 import { isOld } from "../old_place";
@@ -21,6 +21,7 @@ import { eased, type Shown, told } from "./ease";
 const COLOURS: Record<Role, number> = { track: 0x3a4149, body: 0xffb000, arm: 0xffc94d, tool: 0x7a5418 };
 const STATES: Record<string, number> = { moving: 0xffd9b0, silent: 0x9aa2aa };
 const LAMPS: Record<string, number> = { automatic: 0x00a843, manual: 0xffb000, stopped: 0xb00020, fault: 0x9aa2aa };
+const SUN = new Vector3(0.2, 0.5, 0.84); // in the frame of each link
 const LAMP = 0.35; // m, radius
 const ABOVE = 4.2; // m, of the lamp above the ground
 
@@ -28,8 +29,8 @@ export class Model {
   readonly group = new Group();
   shown: Shown | null = null;
   private target: Shown | null = null;
-  private readonly material = new MeshLambertMaterial({ vertexColors: true });
-  private readonly lamp = new Mesh(new SphereGeometry(LAMP, 10, 6), new MeshBasicMaterial());
+  private readonly material = new MeshBasicMaterial({ vertexColors: true });
+  private readonly lamp = new Mesh(new OctahedronGeometry(LAMP), new MeshBasicMaterial());
   private readonly meshes = new Map<string, Mesh>();
 
   constructor(private readonly body: SiteMachine) {
@@ -73,22 +74,30 @@ export class Model {
   }
 }
 
-/** All prisms of a link, flat on each side. */
+/** All prisms of a link; each side has one shade, so that no light has to be computed for each pixel. */
 function geometry(all: readonly Prism[]): BufferGeometry {
   const [positions, colours]: [number[], number[]] = [[], []];
   for (const prism of all) {
-    const before = positions.length;
-    positions.push(...sides(prism));
-    const { r, g, b } = new Color(COLOURS[prism.role]);
-    for (let i = before; i < positions.length; i += 3) {
-      colours.push(r, g, b);
+    const corners = sides(prism);
+    const colour = new Color(COLOURS[prism.role]);
+    for (let i = 0; i < corners.length; i += 9) {
+      const shade = shadeOf(corners.slice(i, i + 9));
+      for (let corner = 0; corner < 3; corner += 1) {
+        colours.push(colour.r * shade, colour.g * shade, colour.b * shade);
+      }
     }
+    positions.push(...corners);
   }
   const found = new BufferGeometry();
   found.setAttribute("position", new Float32BufferAttribute(positions, 3));
   found.setAttribute("color", new Float32BufferAttribute(colours, 3));
-  found.computeVertexNormals(); // no vertex is shared, so each face has its own
   return found;
+}
+
+/** Of a triangle: light from above, and somewhat from the left. */
+function shadeOf([ax = 0, ay = 0, az = 0, bx = 0, by = 0, bz = 0, cx = 0, cy = 0, cz = 0]: number[]): number {
+  const [a, b] = [new Vector3(bx - ax, by - ay, bz - az), new Vector3(cx - ax, cy - ay, cz - az)];
+  return 0.7 + 0.3 * a.cross(b).normalize().dot(SUN);
 }
 
 /** Triangles of a prism, each with its corners anticlockwise from outside. */

@@ -3,9 +3,9 @@
 
 import {
   Color,
-  DirectionalLight,
+  ColorManagement,
   Group,
-  HemisphereLight,
+  LinearSRGBColorSpace,
   PerspectiveCamera,
   Scene,
   Vector3,
@@ -19,6 +19,8 @@ import { Labels } from "./labels";
 import { disposed, laid, people } from "./lines";
 import { Model } from "./model";
 import { Terrain } from "./terrain";
+
+ColorManagement.enabled = false; // colours as they are told: no power for each pixel
 
 const SKY = 0xcfe0ee;
 const ANGLE = 50; // deg, of the view, upwards
@@ -51,10 +53,9 @@ export class Stage {
     view: View,
   ) {
     this.renderer = new WebGLRenderer({ canvas, antialias: false });
+    this.renderer.outputColorSpace = LinearSRGBColorSpace;
     this.scene.background = new Color(SKY);
-    const sun = new DirectionalLight(0xffffff, 2.2);
-    sun.position.set(-0.45, -0.35, 0.82);
-    this.scene.add(new HemisphereLight(0xffffff, 0x8a7a60, 1.4), sun, this.things, this.people);
+    this.scene.add(this.things, this.people);
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.maxPolarAngle = Math.PI / 2 - 0.03; // not below the ground
@@ -167,7 +168,9 @@ export class Stage {
     this.labels.place(this.models, this.camera, this.canvas, this.height);
     this.pictures += 1;
     this.canvas.dataset.pictures = String(this.pictures); // what `make bench` counts
-    this.canvas.dataset.triangles = String(this.terrain?.triangles ?? 0);
+    if (this.terrain !== null) {
+      this.canvas.dataset.triangles = String(this.terrain.triangles);
+    }
     if (moves) {
       this.ask();
     }
