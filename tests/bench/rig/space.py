@@ -42,7 +42,7 @@ def space(folder: Path) -> Figure:
     from browsers import chromium
 
     with big_site(folder) as address, chromium() as browser:
-        page = browser.new_page(locale="en-GB", viewport={"width": WIDTH + 64, "height": round(HEIGHT / 0.62) + 2})
+        page = browser.new_page(locale="en-GB", viewport={"width": WIDTH + 64, "height": round(HEIGHT / 0.62) + 8})
         page.goto(f"{address}/#map/3d")
         return _measured(page)
 

@@ -395,8 +395,8 @@ def test_the_site_is_described(client: Client) -> None:
 
 
 def test_the_ground_of_a_site_that_keeps_one(site_client: FakeSiteClient) -> None:
-    assert Client(app(site_client)).get("/api/ground").json()["rows"] == 0
-    found = Client(app(site_client, ground={})).get("/api/ground?cells=500").json()
+    assert Client(app(site_client, ground=None)).get("/api/ground").json()["rows"] == 0
+    found = Client(app(site_client)).get("/api/ground?cells=500").json()
     assert (found["heights"], found["design"]) == ([1.25, None], [0.5, None])
     assert site_client.calls == [("ground", 500)]
 

@@ -18,7 +18,7 @@ FILES = sorted(path for path in STATIC.rglob("*") if path.is_file())
 CODE = {path: path.read_text(encoding="utf-8") for path in FILES if path.suffix == ".js"}
 SOURCE = PROJECT / "services" / "tms_ur" / "console" / "src"
 REACT = {path: path.read_text(encoding="utf-8") for path in SOURCE.rglob("*.ts*") if path.name != "api.ts"}
-REACT_PAGES = {"board", "tree"}
+REACT_PAGES = {"board", "map", "tree"}
 PAGES = {path: path.read_text(encoding="utf-8") for path in FILES if path.suffix == ".html"}
 
 

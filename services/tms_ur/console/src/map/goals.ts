@@ -1,7 +1,7 @@
 // Places that records hold, and which of them machines go to now.
 
 import { treeOf } from "old/server.js";
-import type { ActiveRun, Record as Stored } from "../models";
+import type { ActiveRun, Stored } from "../models";
 import type { Flat } from "./outline";
 
 /** One pose, or a path, of a record. */

@@ -1,8 +1,9 @@
 import { expect, test } from "vitest";
-import type { SiteMachine } from "../models";
-import { areasOf, middle } from "./areas";
+import type { SiteMachine, Stored } from "../models";
+import { areasOf, flawOf, middle } from "./areas";
 import { corners, hull, shadow } from "./outline";
 import { links, placed, put } from "./pose";
+import { fieldsOf, poseOf } from "./pose_record";
 import { prisms } from "./shapes";
 import { lengthened } from "./trails";
 import { dragged, fitted, gridStep, placeAt, zoomed } from "./view";
@@ -174,4 +175,38 @@ test("areas of a document", () => {
   expect(area?.corners.length).toBe(4);
   expect(middle(area?.corners ?? [])).toEqual([2, 1]);
   expect(areasOf(null)).toEqual([]);
+});
+
+test("a place is only good where the areas let machines be", () => {
+  const square = (id: string, type: string, from: number, to: number) => ({
+    id,
+    type,
+    corners: [
+      [from, from],
+      [to, from],
+      [to, to],
+      [from, to],
+    ] as const,
+  });
+  const areas = [square("yard", "unmanned", 0, 10), square("pit", "blocked", 4, 6)].map((one) => ({
+    ...one,
+    corners: [...one.corners],
+  }));
+  expect(flawOf([2, 2], areas)).toBeNull();
+  expect(flawOf([5, 5], areas)?.[0]).toBe("place_forbidden");
+  expect(flawOf([12, 2], areas)?.[0]).toBe("place_outside");
+  expect(flawOf([12, 2], [])).toBeNull();
+});
+
+test("a record keeps the form that it has, and a new one is a quaternion", () => {
+  const stored = (values: Record<string, number>) => ({ values }) as unknown as Stored;
+  const turned = stored({ x: 1, y: 2, z: 3, qx: 0, qy: 0, qz: Math.SQRT1_2, qw: Math.SQRT1_2 });
+  expect(poseOf(turned)).toEqual({ x: 1, y: 2, heading: 90 });
+  const written = (record: Stored | null) =>
+    Object.fromEntries(fieldsOf({ x: 4, y: 5, heading: 180 }, record).map((one) => [one.name, one.value]));
+  expect(Object.keys(written(turned))).toEqual(["x", "y", "qz", "qw"]);
+  expect(written(turned).qz).toBeCloseTo(1);
+  expect(written(stored({ x: 1, y: 2, yaw: 30 }))).toEqual({ x: 4, y: 5, yaw: 180 });
+  expect(Object.keys(written(null)).sort()).toEqual(["qw", "qx", "qy", "qz", "x", "y", "z"]);
+  expect(poseOf(stored({ angle: 1 }))).toBeNull();
 });

@@ -19,7 +19,14 @@ export interface Scene {
   trails: ReadonlyMap<string, Flat[]>;
 }
 
-export function Picture({ scene, view, size }: { scene: Scene; view: View; size: Size }) {
+interface Props {
+  scene: Scene;
+  view: View;
+  size: Size;
+  chosen: Flat | null; // a place that a person has clicked
+}
+
+export function Picture({ scene, view, size, chosen }: Props) {
   const { t } = useTranslation();
   const { state, bodies } = scene;
   const letters = LETTERS / view.scale;
@@ -35,6 +42,13 @@ export function Picture({ scene, view, size }: { scene: Scene; view: View; size:
         const body = bodies.get(machine.name);
         return body && <MachineMark key={machine.name} machine={machine} body={body} letters={letters} />;
       })}
+      {chosen && (
+        <path
+          className="chosen"
+          transform={`translate(${chosen[0]} ${-chosen[1]}) scale(${letters})`}
+          d="M-1 0 H1 M0 -1 V1"
+        />
+      )}
     </svg>
   );
 }

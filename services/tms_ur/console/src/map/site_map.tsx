@@ -8,7 +8,9 @@ import { useList } from "../use_list";
 import { areasOf } from "./areas";
 import { placesOf } from "./goals";
 import { ZOOM } from "./hands";
+import type { Flat } from "./outline";
 import { Picture, type Scene } from "./picture";
+import { PlaceForm } from "./place_form";
 import { trailsOf } from "./trails";
 import { useView } from "./use_view";
 import { fitted, gridStep } from "./view";
@@ -28,7 +30,8 @@ interface Props {
 export function SiteMap({ state, bodies, inSpace }: Props) {
   const { t } = useTranslation();
   const { list: enabled, error } = useList(readAreas);
-  const records = useList(readRecords).list;
+  const { list: records, again } = useList(readRecords);
+  const [chosen, setChosen] = useState<Flat | null>(null);
   const [follow, setFollow] = useState("");
   const [all, setAll] = useState(false);
   const [design, setDesign] = useState(false);
@@ -46,7 +49,7 @@ export function SiteMap({ state, bodies, inSpace }: Props) {
     known ? outermost(scene) : [],
     place ? [place.x, place.y] : undefined,
     () => setFollow(""),
-    () => {},
+    setChosen,
   );
   const eye = view ?? (known ? fitted(outermost(scene), TYPICAL) : null);
   return (
@@ -70,7 +73,7 @@ export function SiteMap({ state, bodies, inSpace }: Props) {
       </section>
       {/* biome-ignore lint/a11y/noNoninteractiveTabindex: arrow keys move the map */}
       <section id="map_box" className="mapbox" hidden={inSpace} ref={box} tabIndex={0} aria-label={t("map_keys")}>
-        {view && !inSpace && <Picture scene={scene} view={view} size={size} />}
+        {view && !inSpace && <Picture scene={scene} view={view} size={size} chosen={chosen} />}
       </section>
       {eye && inSpace && (
         <section id="space_box" className="mapbox" aria-label={t("map_3d")}>
@@ -78,6 +81,20 @@ export function SiteMap({ state, bodies, inSpace }: Props) {
             <Space scene={scene} view={eye} follow={follow} design={design} />
           </Suspense>
         </section>
+      )}
+      {chosen && !inSpace && (
+        <PlaceForm
+          key={chosen.join()}
+          place={chosen}
+          machines={[...bodies.keys()]}
+          records={records ?? []}
+          areas={areas}
+          onSaved={() => {
+            setChosen(null);
+            again();
+          }}
+          onClose={() => setChosen(null)}
+        />
       )}
       {view && !inSpace && <p className="small">{t("map_note", { step: gridStep(view.scale) })}</p>}
     </>
