@@ -166,6 +166,34 @@ def test_a_place_on_the_map_becomes_a_record(page: Page, address: str, yard: Yar
     assert values["x"] == pytest.approx(7.5, abs=0.1) and values["qz"] == pytest.approx(1.0)
 
 
+def test_areas_are_drawn_and_enabled_as_they_were_checked(page: Page, address: str, yard: Yard) -> None:
+    yard.board.put_place("ic120", Place(x=1.0, y=2.0, yaw=0.0))
+    page.goto(f"{address}/#map")
+    expect(page.locator("#map_box [data-area=yard]")).to_be_visible()
+    page.get_by_role("button", name="Draw areas").click()
+    page.get_by_role("button", name="New area").click()
+    box, editor = page.locator("#map_box"), page.locator("#area_editor")
+    editor.get_by_label("Name").fill("pit")
+    editor.get_by_label("Type").select_option("blocked")
+    for x, y in ((600, 200), (700, 200), (700, 300)):
+        box.click(position={"x": x, "y": y})
+    expect(box.locator("[data-draft=pit]")).to_have_class(re.compile("blocked"))
+    editor.get_by_role("button", name="Check").click()
+    expect(editor.locator("[data-part=changes]")).to_have_text(
+        "yard: changed, 625.0 m² to 600.0 m², 25.0 m² less, 0.0 m² more"
+    )
+    with page.expect_download() as file:
+        editor.get_by_role("button", name="Save as GeoJSON").click()
+    assert file.value.suggested_filename == "areas.geojson"
+    editor.get_by_role("button", name="Enable").click()
+    expect(page.locator("#dialog_text")).to_contain_text("25.0 m² less")
+    page.locator("#dialog_yes").click()
+    expect(page.locator("#message")).to_have_text("The areas are enabled.")
+    (call,) = (one for one in yard.calls if one[0] == "enable_areas")
+    drawn: Any = call[1]
+    assert [one["properties"]["id"] for one in drawn["features"]] == ["yard", "pit"] and call[2] == "a0"
+
+
 def test_the_processes_of_a_silent_pc_are_unknown(page: Page, address: str, yard: Yard) -> None:
     yard.board.put_host(Host(name="pc", processes=[Process(name="tms:ts", state="RUNNING", pid=7, uptime=5.0)]))
     page.goto(f"{address}/#system")

@@ -1,5 +1,6 @@
 import { expect, test } from "vitest";
 import type { SiteMachine, Stored } from "../models";
+import { added, changed, clicked, cornerRemoved, documentOf, draftOf } from "./area_draft";
 import { areasOf, flawOf, middle } from "./areas";
 import { corners, hull, shadow } from "./outline";
 import { links, placed, put } from "./pose";
@@ -209,4 +210,45 @@ test("a record keeps the form that it has, and a new one is a quaternion", () =>
   expect(written(stored({ x: 1, y: 2, yaw: 30 }))).toEqual({ x: 4, y: 5, yaw: 180 });
   expect(Object.keys(written(null)).sort()).toEqual(["qw", "qx", "qy", "qz", "x", "y", "z"]);
   expect(poseOf(stored({ angle: 1 }))).toBeNull();
+});
+
+test("clicks draw an area, take up a corner and put it down", () => {
+  let draft = added(draftOf([]));
+  for (const place of [
+    [0, 0],
+    [10, 0],
+    [10, 10],
+    [0, 10],
+    [5, -1],
+  ] as const) {
+    draft = clicked(draft, place, 0.5);
+  }
+  const corners = () => draft.areas[0]?.corners;
+  expect(corners()).toEqual([
+    [0, 0],
+    [5, -1],
+    [10, 0],
+    [10, 10],
+    [0, 10],
+  ]);
+  draft = clicked(clicked(draft, [4.9, -1.1], 0.5), [5, 2.004], 0.5);
+  expect(corners()?.[1]).toEqual([5, 2]);
+  draft = cornerRemoved(clicked(draft, [5, 2], 0.5));
+  expect(corners()?.length).toBe(4);
+  expect(clicked(draftOf(draft.areas), [50, 50], 0.5).areas).toEqual(draft.areas); // none is chosen
+});
+
+test("a draft is written as areas are read, and says a speed only where it counts", () => {
+  const square = [
+    [0, 0],
+    [1, 0],
+    [1, 1],
+  ] as const;
+  let draft = changed(added(draftOf([])), { type: "speed_limit", corners: [...square] });
+  const [feature] = documentOf(draft.areas).features;
+  expect(feature?.properties).toEqual({ id: "area_1", type: "speed_limit", maximum_speed: 1 });
+  expect(feature?.geometry.coordinates[0]?.length).toBe(4);
+  draft = changed(draft, { type: "blocked" });
+  expect(documentOf(draft.areas).features[0]?.properties).toEqual({ id: "area_1", type: "blocked" });
+  expect(areasOf({ id: "a", by: "", areas: documentOf(draft.areas) })).toEqual(draft.areas);
 });

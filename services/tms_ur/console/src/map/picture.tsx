@@ -2,7 +2,9 @@
 
 import { useTranslation } from "react-i18next";
 import type { SiteMachine, State } from "../models";
+import type { Draft } from "./area_draft";
 import type { Area } from "./areas";
+import { DraftMarks } from "./draft_marks";
 import type { PlaceRecord } from "./goals";
 import { MachineMark } from "./machine_mark";
 import { AreaMarks, Grid, RecordMarks, SpotMarks, TrailMarks } from "./marks";
@@ -24,16 +26,21 @@ interface Props {
   view: View;
   size: Size;
   chosen: Flat | null; // a place that a person has clicked
+  draft: Draft | null; // of the areas
 }
 
-export function Picture({ scene, view, size, chosen }: Props) {
+export function Picture({ scene, view, size, chosen, draft }: Props) {
   const { t } = useTranslation();
   const { state, bodies } = scene;
   const letters = LETTERS / view.scale;
   const placed = state.machines.flatMap(({ name, place }) => (place ? [`${name} (${place.x}, ${place.y})`] : []));
   return (
     <svg id="site_map" role="img" viewBox={viewBox(view, size)} aria-label={`${t("map")}: ${placed.join("; ")}`}>
-      <AreaMarks areas={scene.areas} places={state.shared?.places ?? []} letters={letters} />
+      {draft ? (
+        <DraftMarks draft={draft} enabled={scene.areas} letters={letters} />
+      ) : (
+        <AreaMarks areas={scene.areas} places={state.shared?.places ?? []} letters={letters} />
+      )}
       <Grid view={view} size={size} />
       <TrailMarks trails={scene.trails} />
       <RecordMarks records={scene.records} letters={letters} />
