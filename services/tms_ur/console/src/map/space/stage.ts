@@ -15,9 +15,9 @@ import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import type { Ground } from "../../models";
 import type { Scene as Told } from "../picture";
 import type { View } from "../view";
+import { Fleet } from "./fleet";
 import { Labels } from "./labels";
 import { disposed, laid, people } from "./lines";
-import { Model } from "./model";
 import { Terrain } from "./terrain";
 
 ColorManagement.enabled = false; // colours as they are told: no power for each pixel
@@ -34,7 +34,7 @@ export class Stage {
   private readonly camera = new PerspectiveCamera(ANGLE, 1, 0.5, FAR);
   private readonly controls: OrbitControls;
   private readonly labels: Labels;
-  private readonly models = new Map<string, Model>();
+  private fleet: Fleet | null = null;
   private terrain: Terrain | null = null;
   private things = new Group();
   private people = new Group();
@@ -74,14 +74,12 @@ export class Stage {
     this.told = told;
     this.followed = follow === this.follow ? this.followed : null;
     this.follow = follow;
+    if (this.fleet === null) {
+      this.fleet = new Fleet(told.bodies.values()); // which do not change
+      this.scene.add(this.fleet.mesh);
+    }
     for (const machine of told.state.machines) {
-      const body = told.bodies.get(machine.name);
-      if (body && !this.models.has(machine.name)) {
-        const model = new Model(body);
-        this.models.set(machine.name, model);
-        this.scene.add(model.group);
-      }
-      this.models.get(machine.name)?.tell(machine);
+      this.fleet.models.get(machine.name)?.tell(machine);
     }
     this.people = this.instead(this.people, people(told, this.height));
     if (performance.now() - this.lain > LAYS) {
@@ -129,6 +127,7 @@ export class Stage {
     this.frame = -1;
     this.controls.dispose();
     this.terrain?.dispose();
+    this.fleet?.dispose();
     disposed(this.things);
     disposed(this.people);
     this.renderer.dispose();
@@ -159,13 +158,15 @@ export class Stage {
     const seconds = Math.min(LONGEST, (now - this.before) / 1000);
     this.before = now;
     let moves = false;
-    for (const model of this.models.values()) {
+    for (const model of this.fleet?.models.values() ?? []) {
       moves = model.move(seconds, this.height) || moves;
     }
     this.goAlong();
     this.terrain?.look(this.camera.position);
     this.renderer.render(this.scene, this.camera);
-    this.labels.place(this.models, this.camera, this.canvas, this.height);
+    if (this.fleet !== null) {
+      this.labels.place(this.fleet.models, this.camera, this.canvas, this.height);
+    }
     this.pictures += 1;
     this.canvas.dataset.pictures = String(this.pictures); // what `make bench` counts
     if (this.terrain !== null) {
@@ -178,7 +179,7 @@ export class Stage {
 
   /** The eye goes with the machine that is followed. */
   private goAlong() {
-    const shown = this.models.get(this.follow)?.shown;
+    const shown = this.fleet?.models.get(this.follow)?.shown;
     if (!shown) {
       return;
     }
