@@ -110,14 +110,14 @@ def _machine(name: str, model: str, told: MachineModel) -> SiteMachine:
                             axis=one.axis) for joint, one in told.geometry.items()],
         bodies=[LinkBox(link=link, min=list(box.min), max=list(box.max), pitch=box.pitch)
                 for link, box in told.shapes.items()],
-        bucket=None if (bucket := told.bucket) is None else BucketShape(
-            link=bucket.link, section=[list(at) for at in bucket.section], width=bucket.width),
-        vessel=None if (vessel := told.vessel) is None else VesselShape(
-            link=vessel.link, min=list(vessel.min), max=list(vessel.max)),
-        blade=None if (blade := told.blade) is None else BladeShape(
-            link=blade.link, edge=list(blade.edge), width=blade.width),
-        tracks=None if (tracks := told.tracks) is None else TracksShape(
-            rear=tracks.rear, front=tracks.front, gauge=tracks.gauge, width=tracks.width),
+        bucket=None if told.bucket is None else BucketShape(
+            link=told.bucket.link, section=[list(at) for at in told.bucket.section], width=told.bucket.width),
+        vessel=None if told.vessel is None else VesselShape(
+            link=told.vessel.link, min=list(told.vessel.min), max=list(told.vessel.max)),
+        blade=None if told.blade is None else BladeShape(
+            link=told.blade.link, edge=list(told.blade.edge), width=told.blade.width),
+        tracks=None if told.tracks is None else TracksShape(
+            rear=told.tracks.rear, front=told.tracks.front, gauge=told.tracks.gauge, width=told.tracks.width),
     )  # fmt: skip
 
 

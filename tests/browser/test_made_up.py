@@ -134,6 +134,68 @@ def test_an_old_place_is_marked(page: Page, address: str, yard: Yard) -> None:
     expect(page.locator("#unplaced li").last).to_have_text("ic120: no position for 7.0 s; the map shows the last one.")
 
 
+def test_the_map_stays_where_it_is_until_it_is_moved(page: Page, address: str, yard: Yard) -> None:
+    yard.board.put_place("ic120", Place(x=1.0, y=2.0, yaw=0.0))
+    page.goto(f"{address}/#map")
+    picture, mark = page.locator("#site_map"), page.locator("#map_box [data-machine=ic120] polygon").first
+    before, drawn = picture.get_attribute("viewBox"), mark.get_attribute("points")
+    yard.board.put_place("ic120", Place(x=90.0, y=2.0, yaw=0.0))
+    expect(mark).not_to_have_attribute("points", drawn or "")
+    expect(picture).to_have_attribute("viewBox", before or "")
+    page.locator("#follow").select_option("ic120")
+    expect(picture).not_to_have_attribute("viewBox", before or "")
+    page.goto(f"{address}/#map/3d")
+    expect(page.locator("#space")).to_have_attribute("data-pictures", re.compile(r"\d"))
+
+
+def test_a_place_on_the_map_becomes_a_record(page: Page, address: str, yard: Yard) -> None:
+    yard.board.put_place("ic120", Place(x=1.0, y=2.0, yaw=0.0))
+    page.goto(f"{address}/#map")
+    expect(page.locator("#map_box [data-area=yard]")).to_be_visible()
+    box, form = page.locator("#map_box"), page.locator("#place_form")
+    box.click(position={"x": 8, "y": 8})
+    expect(form.get_by_role("alert")).to_contain_text("lies outside the areas where machines may be")
+    form.get_by_label("Name of the record").fill("HERE")
+    expect(form.get_by_role("button", name="Save")).to_have_count(0)
+    box.click()
+    form.get_by_label("Name of the record").fill("HERE")
+    form.get_by_label("Heading").fill("180")
+    form.get_by_role("button", name="Save").click()
+    expect(page.locator("#message")).to_have_text("ic120/HERE was saved.")
+    (call,) = (one for one in yard.calls if one[0] == "set_parameter")
+    values: Any = call[3]
+    assert (call[1], call[2], call[5]) == ("ic120", "HERE", True)
+    assert values["x"] == pytest.approx(7.5, abs=0.1) and values["qz"] == pytest.approx(1.0)
+
+
+def test_areas_are_drawn_and_enabled_as_they_were_checked(page: Page, address: str, yard: Yard) -> None:
+    yard.board.put_place("ic120", Place(x=1.0, y=2.0, yaw=0.0))
+    page.goto(f"{address}/#map")
+    expect(page.locator("#map_box [data-area=yard]")).to_be_visible()
+    page.get_by_role("button", name="Draw areas").click()
+    page.get_by_role("button", name="New area").click()
+    box, editor = page.locator("#map_box"), page.locator("#area_editor")
+    editor.get_by_label("Name").fill("pit")
+    editor.get_by_label("Type").select_option("blocked")
+    for x, y in ((600, 200), (700, 200), (700, 300)):
+        box.click(position={"x": x, "y": y})
+    expect(box.locator("[data-draft=pit]")).to_have_class(re.compile("blocked"))
+    editor.get_by_role("button", name="Check").click()
+    expect(editor.locator("[data-part=changes]")).to_have_text(
+        "yard: changed, 625.0 m² to 600.0 m², 25.0 m² less, 0.0 m² more"
+    )
+    with page.expect_download() as file:
+        editor.get_by_role("button", name="Save as GeoJSON").click()
+    assert file.value.suggested_filename == "areas.geojson"
+    editor.get_by_role("button", name="Enable").click()
+    expect(page.locator("#dialog_text")).to_contain_text("25.0 m² less")
+    page.locator("#dialog_yes").click()
+    expect(page.locator("#message")).to_have_text("The areas are enabled.")
+    (call,) = (one for one in yard.calls if one[0] == "enable_areas")
+    drawn: Any = call[1]
+    assert [one["properties"]["id"] for one in drawn["features"]] == ["yard", "pit"] and call[2] == "a0"
+
+
 def test_the_processes_of_a_silent_pc_are_unknown(page: Page, address: str, yard: Yard) -> None:
     yard.board.put_host(Host(name="pc", processes=[Process(name="tms:ts", state="RUNNING", pid=7, uptime=5.0)]))
     page.goto(f"{address}/#system")

@@ -42,14 +42,13 @@ def space(folder: Path) -> Figure:
     from browsers import chromium
 
     with big_site(folder) as address, chromium() as browser:
-        page = browser.new_page(locale="en-GB", viewport={"width": WIDTH + 64, "height": round(HEIGHT / 0.62) + 2})
+        page = browser.new_page(locale="en-GB", viewport={"width": WIDTH + 64, "height": round(HEIGHT / 0.62) + 8})
         page.goto(f"{address}/#map/3d")
         return _measured(page)
 
 
 def _measured(page: Page) -> Figure:
-    page.wait_for_selector("#space[data-pictures]")
-    page.wait_for_function("document.getElementById('space').dataset.triangles > 10000")
+    page.wait_for_selector("#space[data-triangles]")
     width, height, triangles = page.evaluate(
         "(({ width, height, dataset }) => [width, height, Number(dataset.triangles)])(document.getElementById('space'))"
     )

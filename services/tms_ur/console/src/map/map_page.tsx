@@ -16,19 +16,22 @@ export default function MapPage({ rest }: { rest: string }) {
   const { state } = useLive();
   const site = useList(readSite).list;
   const bodies = useMemo(() => new Map(site?.machines.map((one) => [one.name, one])), [site]);
+  const inSpace = rest === "3d";
   return (
     <>
       <h2>{t("p_map")}</h2>
       {state && <Notes state={state} />}
-      {state && site && <SiteMap state={state} bodies={bodies} inSpace={rest === "3d"} />}
-      <div id="arms" className="cards">
-        {state?.machines.map((machine) => {
-          const body = bodies.get(machine.name);
-          return body && body.arm.length > 1 && machine.joints.length > 0 ? (
-            <SideView key={machine.name} machine={machine} body={body} />
-          ) : null;
-        })}
-      </div>
+      {state && site && <SiteMap state={state} bodies={bodies} inSpace={inSpace} />}
+      {!inSpace && (
+        <div id="arms" className="cards">
+          {state?.machines.map((machine) => {
+            const body = bodies.get(machine.name);
+            return body && body.arm.length > 1 && machine.joints.length > 0 ? (
+              <SideView key={machine.name} machine={machine} body={body} />
+            ) : null;
+          })}
+        </div>
+      )}
     </>
   );
 }

@@ -5,14 +5,20 @@ import { useTranslation } from "react-i18next";
 import type { SiteMachine, State } from "../models";
 import { get } from "../server";
 import { useList } from "../use_list";
+import { clicked, type Draft, draftOf } from "./area_draft";
+import { AreaEditor } from "./area_editor";
 import { areasOf } from "./areas";
 import { placesOf } from "./goals";
 import { ZOOM } from "./hands";
+import type { Flat } from "./outline";
 import { Picture, type Scene } from "./picture";
+import { PlaceForm } from "./place_form";
 import { trailsOf } from "./trails";
 import { useView } from "./use_view";
-import { gridStep } from "./view";
+import { fitted, gridStep } from "./view";
 
+const REACH = 14; // px within which a click means a corner
+const TYPICAL = { width: 1280, height: 720 }; // px, where the map from above has not been shown yet
 const Space = lazy(() => import("./space/space"));
 
 const readAreas = () => get("/api/areas");
@@ -26,8 +32,10 @@ interface Props {
 
 export function SiteMap({ state, bodies, inSpace }: Props) {
   const { t } = useTranslation();
-  const { list: enabled, error } = useList(readAreas);
-  const records = useList(readRecords).list;
+  const { list: enabled, error, again: readAgain } = useList(readAreas);
+  const [draft, setDraft] = useState<Draft | null>(null);
+  const { list: records, again } = useList(readRecords);
+  const [chosen, setChosen] = useState<Flat | null>(null);
   const [follow, setFollow] = useState("");
   const [all, setAll] = useState(false);
   const [design, setDesign] = useState(false);
@@ -45,8 +53,13 @@ export function SiteMap({ state, bodies, inSpace }: Props) {
     known ? outermost(scene) : [],
     place ? [place.x, place.y] : undefined,
     () => setFollow(""),
-    () => {},
+    (at, scale) => (draft ? setDraft(clicked(draft, at, REACH / scale)) : setChosen(at)),
   );
+  const draw = () => {
+    setChosen(null);
+    setDraft(draftOf(areas));
+  };
+  const eye = view ?? (known ? fitted(outermost(scene), TYPICAL) : null);
   return (
     <>
       <section className="bar" aria-label={t("map_view")}>
@@ -64,18 +77,48 @@ export function SiteMap({ state, bodies, inSpace }: Props) {
           </select>
         </label>
         <Choice id="all_records" text={t("all_records")} chosen={all} choose={setAll} />
+        {!inSpace && draft === null && (
+          <button type="button" onClick={draw}>
+            {t("change_areas")}
+          </button>
+        )}
         {inSpace && <Choice id="design" text={t("design_surface")} chosen={design} choose={setDesign} />}
       </section>
       {/* biome-ignore lint/a11y/noNoninteractiveTabindex: arrow keys move the map */}
       <section id="map_box" className="mapbox" hidden={inSpace} ref={box} tabIndex={0} aria-label={t("map_keys")}>
-        {view && !inSpace && <Picture scene={scene} view={view} size={size} />}
+        {view && !inSpace && <Picture scene={scene} view={view} size={size} chosen={chosen} draft={draft} />}
       </section>
-      {view && inSpace && (
+      {eye && inSpace && (
         <section id="space_box" className="mapbox" aria-label={t("map_3d")}>
           <Suspense>
-            <Space scene={scene} view={view} follow={follow} design={design} />
+            <Space scene={scene} view={eye} follow={follow} design={design} />
           </Suspense>
         </section>
+      )}
+      {draft && !inSpace && (
+        <AreaEditor
+          draft={draft}
+          onChange={setDraft}
+          onEnabled={() => {
+            setDraft(null);
+            readAgain();
+          }}
+          onClose={() => setDraft(null)}
+        />
+      )}
+      {chosen && !inSpace && (
+        <PlaceForm
+          key={chosen.join()}
+          place={chosen}
+          machines={[...bodies.keys()]}
+          records={records ?? []}
+          areas={areas}
+          onSaved={() => {
+            setChosen(null);
+            again();
+          }}
+          onClose={() => setChosen(null)}
+        />
       )}
       {view && !inSpace && <p className="small">{t("map_note", { step: gridStep(view.scale) })}</p>}
     </>

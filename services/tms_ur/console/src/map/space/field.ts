@@ -6,7 +6,7 @@ import type { Flat } from "../outline";
 /** Quads along the side of a tile. */
 export const SIDE = 32;
 export const COARSEST = 16; // quads that become one at most
-const NEAR = 60; // m within which a tile has all its quads, where the budget allows it
+const NEAR = 40; // m within which a tile has all its quads, where the budget allows it
 const FARTHER = 0.8; // by which the near range shrinks until the budget is kept
 
 export interface Tile {

@@ -1,56 +1,42 @@
-// A machine in 3D: the prisms of each of its links as one mesh, which follows its joints.
+// A machine in 3D: its links in the mesh of all machines, which follow its joints.
 
-import {
-  BufferGeometry,
-  Color,
-  Float32BufferAttribute,
-  Group,
-  Mesh,
-  MeshBasicMaterial,
-  MeshLambertMaterial,
-  ShapeUtils,
-  SphereGeometry,
-  Vector2,
-} from "three";
+import { type BatchedMesh, Color, Matrix4 } from "three";
 import type { Machine, SiteMachine } from "../../models";
 import { isOld } from "../old_place";
-import { links, placed } from "../pose";
-import { type Prism, prisms, type Role } from "../shapes";
+import { type Frame, links, placed } from "../pose";
 import { eased, type Shown, told } from "./ease";
 
-const COLOURS: Record<Role, number> = { track: 0x3a4149, body: 0xffb000, arm: 0xffc94d, tool: 0x7a5418 };
 const STATES: Record<string, number> = { moving: 0xffd9b0, silent: 0x9aa2aa };
+const USUAL = 0xffffff;
 const LAMPS: Record<string, number> = { automatic: 0x00a843, manual: 0xffb000, stopped: 0xb00020, fault: 0x9aa2aa };
-const LAMP = 0.35; // m, radius
 const ABOVE = 4.2; // m, of the lamp above the ground
 
 export class Model {
-  readonly group = new Group();
   shown: Shown | null = null;
   private target: Shown | null = null;
-  private readonly material = new MeshLambertMaterial({ vertexColors: true });
-  private readonly lamp = new Mesh(new SphereGeometry(LAMP, 10, 6), new MeshBasicMaterial());
-  private readonly meshes = new Map<string, Mesh>();
+  private readonly matrix = new Matrix4();
+  private readonly colour = new Color();
 
-  constructor(private readonly body: SiteMachine) {
-    const parts = Map.groupBy(prisms(body), (one) => one.link);
-    for (const [link, all] of parts) {
-      const mesh = new Mesh(geometry(all), this.material);
-      mesh.matrixAutoUpdate = false;
-      this.meshes.set(link, mesh);
-      this.group.add(mesh);
-    }
-    this.group.add(this.lamp);
-    this.group.visible = false;
+  /** `parts`: the number of each link in the mesh. */
+  constructor(
+    private readonly body: SiteMachine,
+    private readonly mesh: BatchedMesh,
+    private readonly parts: ReadonlyMap<string, number>,
+    private readonly lamp: number,
+  ) {
+    this.show(false);
   }
 
   /** Takes what the machine tells. */
   tell(machine: Machine) {
     this.target = told(machine);
     this.shown ??= this.target;
-    this.group.visible = this.shown !== null;
-    this.material.color.set(STATES[isOld(machine) ? "silent" : machine.state] ?? 0xffffff);
-    this.lamp.material.color.set(LAMPS[machine.lamp ?? "fault"] ?? 0x9aa2aa);
+    this.show(this.shown !== null);
+    this.colour.set(STATES[isOld(machine) ? "silent" : machine.state] ?? USUAL);
+    for (const number of this.parts.values()) {
+      this.mesh.setColorAt(number, this.colour);
+    }
+    this.mesh.setColorAt(this.lamp, this.colour.set(LAMPS[machine.lamp ?? "fault"] ?? USUAL));
   }
 
   /** Moves on to what was told last, `seconds` after the picture before; whether it is still on its way. */
@@ -62,57 +48,21 @@ export class Model {
     this.shown = shown;
     const z = height(shown.x, shown.y);
     const frames = links(this.body, shown.angles, placed(shown.x, shown.y, shown.yaw, z));
-    for (const [link, mesh] of this.meshes) {
-      const [a = 1, b = 0, c = 0, x = 0, d = 0, e = 1, f = 0, y = 0, g = 0, h = 0, i = 1, up = 0] =
-        frames.get(link) ?? [];
-      mesh.matrix.set(a, b, c, x, d, e, f, y, g, h, i, up, 0, 0, 0, 1);
-      mesh.matrixWorldNeedsUpdate = true;
+    for (const [link, number] of this.parts) {
+      this.put(number, frames.get(link) ?? placed(0, 0, 0));
     }
-    this.lamp.position.set(shown.x, shown.y, z + ABOVE);
+    this.put(this.lamp, placed(shown.x, shown.y, 0, z + ABOVE));
     return moves;
   }
-}
 
-/** All prisms of a link, flat on each side. */
-function geometry(all: readonly Prism[]): BufferGeometry {
-  const [positions, colours]: [number[], number[]] = [[], []];
-  for (const prism of all) {
-    const before = positions.length;
-    positions.push(...sides(prism));
-    const { r, g, b } = new Color(COLOURS[prism.role]);
-    for (let i = before; i < positions.length; i += 3) {
-      colours.push(r, g, b);
+  private put(number: number, frame: Frame) {
+    const [a = 1, b = 0, c = 0, x = 0, d = 0, e = 1, f = 0, y = 0, g = 0, h = 0, i = 1, z = 0] = frame;
+    this.mesh.setMatrixAt(number, this.matrix.set(a, b, c, x, d, e, f, y, g, h, i, z, 0, 0, 0, 1));
+  }
+
+  private show(visible: boolean) {
+    for (const number of [...this.parts.values(), this.lamp]) {
+      this.mesh.setVisibleAt(number, visible);
     }
   }
-  const found = new BufferGeometry();
-  found.setAttribute("position", new Float32BufferAttribute(positions, 3));
-  found.setAttribute("color", new Float32BufferAttribute(colours, 3));
-  found.computeVertexNormals(); // no vertex is shared, so each face has its own
-  return found;
-}
-
-/** Triangles of a prism, each with its corners anticlockwise from outside. */
-function sides({ outline, y0, y1 }: Prism): number[] {
-  const turns = ShapeUtils.isClockWise(outline.map(([x, z]) => new Vector2(x, z)));
-  const points = turns ? [...outline].reverse() : [...outline];
-  const flat = points.map(([x, z]) => new Vector2(x, z));
-  const found: number[] = [];
-  const put = (index: number, y: number) => {
-    const [x = 0, z = 0] = points[index] ?? [];
-    found.push(x, y, z);
-  };
-  for (const [a = 0, b = 0, c = 0] of ShapeUtils.triangulateShape(flat, [])) {
-    for (const index of [a, b, c]) put(index, y0); // x-z plane: anticlockwise looks to -y
-    for (const index of [c, b, a]) put(index, y1);
-  }
-  points.forEach((_, a) => {
-    const b = (a + 1) % points.length;
-    put(a, y0);
-    put(a, y1);
-    put(b, y1);
-    put(a, y0);
-    put(b, y1);
-    put(b, y0);
-  });
-  return found;
 }

@@ -3,9 +3,9 @@
 
 import {
   Color,
-  DirectionalLight,
+  ColorManagement,
   Group,
-  HemisphereLight,
+  LinearSRGBColorSpace,
   PerspectiveCamera,
   Scene,
   Vector3,
@@ -15,10 +15,12 @@ import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import type { Ground } from "../../models";
 import type { Scene as Told } from "../picture";
 import type { View } from "../view";
+import { Fleet } from "./fleet";
 import { Labels } from "./labels";
 import { disposed, laid, people } from "./lines";
-import { Model } from "./model";
 import { Terrain } from "./terrain";
+
+ColorManagement.enabled = false; // colours as they are told: no power for each pixel
 
 const SKY = 0xcfe0ee;
 const ANGLE = 50; // deg, of the view, upwards
@@ -32,7 +34,7 @@ export class Stage {
   private readonly camera = new PerspectiveCamera(ANGLE, 1, 0.5, FAR);
   private readonly controls: OrbitControls;
   private readonly labels: Labels;
-  private readonly models = new Map<string, Model>();
+  private fleet: Fleet | null = null;
   private terrain: Terrain | null = null;
   private things = new Group();
   private people = new Group();
@@ -51,10 +53,9 @@ export class Stage {
     view: View,
   ) {
     this.renderer = new WebGLRenderer({ canvas, antialias: false });
+    this.renderer.outputColorSpace = LinearSRGBColorSpace;
     this.scene.background = new Color(SKY);
-    const sun = new DirectionalLight(0xffffff, 2.2);
-    sun.position.set(-0.45, -0.35, 0.82);
-    this.scene.add(new HemisphereLight(0xffffff, 0x8a7a60, 1.4), sun, this.things, this.people);
+    this.scene.add(this.things, this.people);
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.maxPolarAngle = Math.PI / 2 - 0.03; // not below the ground
@@ -73,14 +74,12 @@ export class Stage {
     this.told = told;
     this.followed = follow === this.follow ? this.followed : null;
     this.follow = follow;
+    if (this.fleet === null) {
+      this.fleet = new Fleet(told.bodies.values()); // which do not change
+      this.scene.add(this.fleet.mesh);
+    }
     for (const machine of told.state.machines) {
-      const body = told.bodies.get(machine.name);
-      if (body && !this.models.has(machine.name)) {
-        const model = new Model(body);
-        this.models.set(machine.name, model);
-        this.scene.add(model.group);
-      }
-      this.models.get(machine.name)?.tell(machine);
+      this.fleet.models.get(machine.name)?.tell(machine);
     }
     this.people = this.instead(this.people, people(told, this.height));
     if (performance.now() - this.lain > LAYS) {
@@ -128,6 +127,7 @@ export class Stage {
     this.frame = -1;
     this.controls.dispose();
     this.terrain?.dispose();
+    this.fleet?.dispose();
     disposed(this.things);
     disposed(this.people);
     this.renderer.dispose();
@@ -158,16 +158,20 @@ export class Stage {
     const seconds = Math.min(LONGEST, (now - this.before) / 1000);
     this.before = now;
     let moves = false;
-    for (const model of this.models.values()) {
+    for (const model of this.fleet?.models.values() ?? []) {
       moves = model.move(seconds, this.height) || moves;
     }
     this.goAlong();
     this.terrain?.look(this.camera.position);
     this.renderer.render(this.scene, this.camera);
-    this.labels.place(this.models, this.camera, this.canvas, this.height);
+    if (this.fleet !== null) {
+      this.labels.place(this.fleet.models, this.camera, this.canvas, this.height);
+    }
     this.pictures += 1;
     this.canvas.dataset.pictures = String(this.pictures); // what `make bench` counts
-    this.canvas.dataset.triangles = String(this.terrain?.triangles ?? 0);
+    if (this.terrain !== null) {
+      this.canvas.dataset.triangles = String(this.terrain.triangles);
+    }
     if (moves) {
       this.ask();
     }
@@ -175,7 +179,7 @@ export class Stage {
 
   /** The eye goes with the machine that is followed. */
   private goAlong() {
-    const shown = this.models.get(this.follow)?.shown;
+    const shown = this.fleet?.models.get(this.follow)?.shown;
     if (!shown) {
       return;
     }
