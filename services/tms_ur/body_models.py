@@ -110,12 +110,13 @@ def _machine(name: str, model: str, told: MachineModel) -> SiteMachine:
                             axis=one.axis) for joint, one in told.geometry.items()],
         bodies=[LinkBox(link=link, min=list(box.min), max=list(box.max), pitch=box.pitch)
                 for link, box in told.shapes.items()],
-        bucket=told.bucket and BucketShape(
+        bucket=None if told.bucket is None else BucketShape(
             link=told.bucket.link, section=[list(at) for at in told.bucket.section], width=told.bucket.width),
-        vessel=told.vessel and VesselShape(
+        vessel=None if told.vessel is None else VesselShape(
             link=told.vessel.link, min=list(told.vessel.min), max=list(told.vessel.max)),
-        blade=told.blade and BladeShape(link=told.blade.link, edge=list(told.blade.edge), width=told.blade.width),
-        tracks=told.tracks and TracksShape(
+        blade=None if told.blade is None else BladeShape(
+            link=told.blade.link, edge=list(told.blade.edge), width=told.blade.width),
+        tracks=None if told.tracks is None else TracksShape(
             rear=told.tracks.rear, front=told.tracks.front, gauge=told.tracks.gauge, width=told.tracks.width),
     )  # fmt: skip
 

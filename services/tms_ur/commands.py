@@ -19,7 +19,17 @@ from tms_reason.errors import TmsError
 from tms_reason.reason import Reason
 from tms_ur.access import Person
 from tms_ur.angle_limits import check_angles
-from tms_ur.command_models import AnswerGiven, Nothing, RearmAsked, StartRun, StopAsked, TaskGiven, TemplateGiven
+from tms_ur.command_models import (
+    AnswerGiven,
+    AreasGiven,
+    AreasWanted,
+    Nothing,
+    RearmAsked,
+    StartRun,
+    StopAsked,
+    TaskGiven,
+    TemplateGiven,
+)
 from tms_ur.data_models import FieldGiven, RecordGiven
 from tms_ur.models import Added, AddedTemplate, Rearmed, Receipt, RunAsked
 from tms_ur.place_models import Revoked
@@ -27,6 +37,7 @@ from tms_ur.problems import Admin, Operator, Viewer, problems
 from tms_ur.reading import MachineName, PlaceName, ProcessName, RunId, TaskId
 from tms_ur.reasons import BadValue, IntTooLong, NotFinite, NotOfType, NotUnicode, Starting
 from tms_ur.security import source
+from tms_ur.watch_models import AreasChecked
 
 if TYPE_CHECKING:
     from tms_ur.audit import Audit
@@ -47,6 +58,7 @@ def add(app: FastAPI, client: "SiteClient", audit: "Audit", site: Site) -> None:
     _machines(app, client, note, site)
     _stored(app, client, note, site)
     _places(app, client, note)
+    _areas(app, client, note)
     _processes(app, client, note)
     _interrupted(app, client, note)
 
@@ -217,6 +229,18 @@ def _places(app: FastAPI, client: "SiteClient", note: _Note) -> None:
     def revoke(request: Request, name: PlaceName, _: Nothing, person: Operator) -> Revoked:
         who = note(request, person, "revoke_place_asked", name)
         return Revoked(place=name, holder=client.shared.revoke(name, who))
+
+
+def _areas(app: FastAPI, client: "SiteClient", note: _Note) -> None:
+    @app.post("/api/areas/check", summary="What would change if areas were enabled; enables nothing", responses=ANSWERS)
+    def check(given: AreasGiven, person: Viewer) -> AreasChecked:
+        return client.check_areas(given.areas)
+
+    @app.post("/api/areas/enable", summary="Let areas count from now on, at every gateway", responses=ANSWERS)
+    def enable(request: Request, given: AreasWanted, person: Admin) -> Nothing:
+        who = note(request, person, "enable_areas_asked", given.id)
+        client.enable_areas(given.areas, given.id, who)
+        return Nothing()
 
 
 def _processes(app: FastAPI, client: "SiteClient", note: _Note) -> None:

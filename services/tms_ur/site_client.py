@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from std_msgs.msg import String
 from tms_msg_db.srv import (
     AddTask,
     AddTemplate,
@@ -37,7 +38,7 @@ from tms_reason.reason import Reason
 from tms_ros.node import Ros
 from tms_ur import messages
 from tms_ur.answers import checked
-from tms_ur.area_client import let_back
+from tms_ur.area_client import check_areas, enable_areas, let_back
 from tms_ur.board import Board
 from tms_ur.data_models import Change, Record, Sensing
 from tms_ur.ground_client import ground
@@ -48,6 +49,7 @@ from tms_ur.reason_view import of_error, of_line, view
 from tms_ur.reasons import UnknownProcess
 from tms_ur.run_calls import CALL_LIMIT, RunCalls
 from tms_ur.scene_models import Scene, scene
+from tms_ur.watch_models import AreasChecked
 from tms_ur.watching import Watching
 
 PROCESS_LIMIT = 15.0  # s for a process to end and to be started
@@ -58,10 +60,11 @@ class SiteClient(RunCalls):
 
     def __init__(self, ros: Ros, site: Site) -> None:
         super().__init__(ros)
-        names = list(site.file.machines)
+        self._machines = names = list(site.file.machines)
         self.board = Board(names)
         self._on_demand = {row.full for row in table(site) if not row.autostart}
         self.watching, self.shared = Watching(ros, site, self.board), PlaceClient(ros, self.board)
+        self.palette = ""  # the nodes of trees, as XML; empty until the scheduler has told them
         self._inputs: tuple[list[InputState], float] | None = None  # read and replaced in one step
         self._places = Places(ros, {name: site.border(name) for name in names})
         for name in names:
@@ -69,6 +72,7 @@ class SiteClient(RunCalls):
             ros.subscribe(StopReceipt, f"/{name}/rc/receipts", self._on_receipt, depth=20, latched=True)
             ros.prepare(StopMachine, f"/{name}/rc/stop")
         ros.subscribe(RunStates, "/tms/runs", self._on_runs, latched=True)
+        ros.subscribe(String, "/tms/palette", self._on_palette, latched=True)
         ros.subscribe(Processes, "/tms/host/processes", self._on_processes, depth=10, latched=True)
         ros.subscribe(InputStates, "/tms/sp/inputs", self._on_inputs, latched=True)
         ros.poll_in_thread(PERIOD, self._update_places, "places")
@@ -84,6 +88,9 @@ class SiteClient(RunCalls):
     def _on_runs(self, message: RunStates) -> None:
         runs = [messages.active_run(run) for run in message.runs]
         self.board.put_runs(runs, [messages.question(asked) for asked in message.questions])
+
+    def _on_palette(self, message: String) -> None:
+        self.palette = message.data
 
     def _on_processes(self, message: Processes) -> None:
         rows = [messages.process(row, row.name in self._on_demand) for row in message.processes]
@@ -207,6 +214,14 @@ class SiteClient(RunCalls):
     def let_back(self, machine: str, who: str) -> None:
         """Let a machine that stands outside its areas be moved back in; a TmsError says why not."""
         let_back(self._ros, machine, who)
+
+    def check_areas(self, areas: dict[str, Any]) -> AreasChecked:
+        """What would change if these areas were enabled; a TmsError says what is wrong with them."""
+        return check_areas(self._ros, self._machines, self.watching.areas(), areas)
+
+    def enable_areas(self, areas: dict[str, Any], shown: str, who: str) -> None:
+        """Enable areas at every gateway; a TmsError says who refuses."""
+        enable_areas(self._ros, self._machines, areas, shown, who)
 
     def scene(self, machine: str) -> Scene:
         """What the planner of a machine plans among now.

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import Page, expect
 
 from tms_config.clock import utc_now
@@ -14,6 +15,7 @@ from tms_decision.reasons import SoftwareStop
 from tms_reason.errors import TmsError
 from tms_reason.reason import Reason
 from tms_reason.remedies import REARM, RESUME
+from tms_ts.bt import check, palette
 from tms_ur.models import Event, Host, Place, Process, Question
 from tms_ur.reason_view import view
 from unit.tms_ur.fakes import NOON
@@ -130,6 +132,68 @@ def test_an_old_place_is_marked(page: Page, address: str, yard: Yard) -> None:
     yard.receive()  # its joints go on
     expect(mark).to_have_attribute("class", "machine silent")
     expect(page.locator("#unplaced li").last).to_have_text("ic120: no position for 7.0 s; the map shows the last one.")
+
+
+def test_the_map_stays_where_it_is_until_it_is_moved(page: Page, address: str, yard: Yard) -> None:
+    yard.board.put_place("ic120", Place(x=1.0, y=2.0, yaw=0.0))
+    page.goto(f"{address}/#map")
+    picture, mark = page.locator("#site_map"), page.locator("#map_box [data-machine=ic120] polygon").first
+    before, drawn = picture.get_attribute("viewBox"), mark.get_attribute("points")
+    yard.board.put_place("ic120", Place(x=90.0, y=2.0, yaw=0.0))
+    expect(mark).not_to_have_attribute("points", drawn or "")
+    expect(picture).to_have_attribute("viewBox", before or "")
+    page.locator("#follow").select_option("ic120")
+    expect(picture).not_to_have_attribute("viewBox", before or "")
+    page.goto(f"{address}/#map/3d")
+    expect(page.locator("#space")).to_have_attribute("data-pictures", re.compile(r"\d"))
+
+
+def test_a_place_on_the_map_becomes_a_record(page: Page, address: str, yard: Yard) -> None:
+    yard.board.put_place("ic120", Place(x=1.0, y=2.0, yaw=0.0))
+    page.goto(f"{address}/#map")
+    expect(page.locator("#map_box [data-area=yard]")).to_be_visible()
+    box, form = page.locator("#map_box"), page.locator("#place_form")
+    box.click(position={"x": 8, "y": 8})
+    expect(form.get_by_role("alert")).to_contain_text("lies outside the areas where machines may be")
+    form.get_by_label("Name of the record").fill("HERE")
+    expect(form.get_by_role("button", name="Save")).to_have_count(0)
+    box.click()
+    form.get_by_label("Name of the record").fill("HERE")
+    form.get_by_label("Heading").fill("180")
+    form.get_by_role("button", name="Save").click()
+    expect(page.locator("#message")).to_have_text("ic120/HERE was saved.")
+    (call,) = (one for one in yard.calls if one[0] == "set_parameter")
+    values: Any = call[3]
+    assert (call[1], call[2], call[5]) == ("ic120", "HERE", True)
+    assert values["x"] == pytest.approx(7.5, abs=0.1) and values["qz"] == pytest.approx(1.0)
+
+
+def test_areas_are_drawn_and_enabled_as_they_were_checked(page: Page, address: str, yard: Yard) -> None:
+    yard.board.put_place("ic120", Place(x=1.0, y=2.0, yaw=0.0))
+    page.goto(f"{address}/#map")
+    expect(page.locator("#map_box [data-area=yard]")).to_be_visible()
+    page.get_by_role("button", name="Draw areas").click()
+    page.get_by_role("button", name="New area").click()
+    box, editor = page.locator("#map_box"), page.locator("#area_editor")
+    editor.get_by_label("Name").fill("pit")
+    editor.get_by_label("Type").select_option("blocked")
+    for x, y in ((600, 200), (700, 200), (700, 300)):
+        box.click(position={"x": x, "y": y})
+    expect(box.locator("[data-draft=pit]")).to_have_class(re.compile("blocked"))
+    editor.get_by_role("button", name="Check").click()
+    expect(editor.locator("[data-part=changes]")).to_have_text(
+        "yard: changed, 625.0 m² to 600.0 m², 25.0 m² less, 0.0 m² more"
+    )
+    with page.expect_download() as file:
+        editor.get_by_role("button", name="Save as GeoJSON").click()
+    assert file.value.suggested_filename == "areas.geojson"
+    editor.get_by_role("button", name="Enable").click()
+    expect(page.locator("#dialog_text")).to_contain_text("25.0 m² less")
+    page.locator("#dialog_yes").click()
+    expect(page.locator("#message")).to_have_text("The areas are enabled.")
+    (call,) = (one for one in yard.calls if one[0] == "enable_areas")
+    drawn: Any = call[1]
+    assert [one["properties"]["id"] for one in drawn["features"]] == ["yard", "pit"] and call[2] == "a0"
 
 
 def test_the_processes_of_a_silent_pc_are_unknown(page: Page, address: str, yard: Yard) -> None:
@@ -257,3 +321,50 @@ def test_a_file_is_stored_as_a_template_under_its_name(page: Page, address: str,
     page.locator("#dialog_yes").click()
     expect(page.locator("#message")).to_have_text("Stored as template Dig.")
     assert [call for call in yard.calls if call[0] == "add_template"] == [("add_template", "Dig", text, "", True)]
+
+
+def structural(xml: str) -> tuple[list[Reason], list[Reason]]:
+    """The check of a tree as far as the tree alone tells."""
+    return [error.reason for error in check(xml).errors], []
+
+
+DRAWN = """        <Sequence>
+            <Action ID="LeafNodeZx200" model_name="zx200" subtask_name="subtask_zx200_change_pose" record_name="pose"/>
+            <Action ID="WaitForClick"/>
+            <Action ID="LeafNodeZx200" model_name="zx200" subtask_name="subtask_zx200_change_pose" record_name="pose"/>
+        </Sequence>
+"""
+
+
+def test_a_task_is_drawn_checked_and_saved(
+    page: Page, address: str, yard: Yard, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """By what is written on the page alone: three leaves, one of them by drag and one by copy and keys."""
+    monkeypatch.setattr(yard, "check_task", structural)
+    yard.palette = palette(builtin=True)
+    page.goto(f"{address}/#tasks")
+    page.get_by_role("link", name="Draw a task").click()
+    findings = page.get_by_role("region", name="Check")
+    expect(findings).to_contain_text("Errors (1)")  # the Sequence is empty
+    nodes = page.locator("[data-path]")
+    expect(nodes).to_have_text(["Sequence ✖1"])
+    page.get_by_text("zx200", exact=True).click()
+    page.get_by_role("button", name="subtask_zx200_change_pose", exact=True).click()
+    page.get_by_label("record_name").fill("pose")
+    page.get_by_label("Filter").fill("click")
+    page.get_by_role("button", name="WaitForClick").drag_to(nodes.first)
+    drawing = page.get_by_role("application", name="Drawing of the tree")
+    drawing.focus()
+    for key in ("ArrowLeft", "Control+c", "ArrowRight", "Control+v", "Control+v", "Control+z"):
+        page.keyboard.press(key)
+    expect(nodes).to_have_count(4)
+    expect(findings).to_have_text("Check: nothing to complain of.")
+    assert Axe().run(page).response["violations"] == []
+    page.get_by_label("Name of the task").fill("dig")
+    page.get_by_label("Comment on this version").fill("first")
+    page.get_by_role("button", name="Save", exact=True).click()
+    expect(page.locator("#message")).to_have_text("Stored as task 5.")
+    [(_, stored, description)] = [call for call in yard.calls if call[0] == "add_task"]
+    assert description == "dig | first"
+    assert DRAWN in str(stored)
+    assert check(str(stored)).errors == []

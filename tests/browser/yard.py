@@ -31,17 +31,20 @@ RUN = ActiveRun(run_id="r-1", task_id=4, state="running", machines=["zx200"])
 class Yard(FakeSiteClient):
     """Two machines, and a clock that the test turns."""
 
-    def __init__(self) -> None:
+    def __init__(self, models: dict[str, str] | None = None, **site: object) -> None:
+        """`models`: of its machines, by their names; `site`: what else its file says."""
         super().__init__()
+        self.models = models or {name: name for name in MACHINES}
+        self.site = site
         self.now = 100.0
-        self.board = Board(MACHINES, lambda: self.now)
+        self.board = Board(self.models, lambda: self.now)
         self.slow = threading.Event()  # until then zx200 does not answer
         self.journals: dict[str, list[Event]] = {}
         self.taken = False  # whether the template has another text
 
     def receive(self, **facts: Any) -> None:
         """Both machines and the scheduler."""
-        for name in MACHINES:
+        for name in self.models:
             self.board.put_machine(Machine(name=name, state="standing", joint_age=0.1, **facts))
         self.board.put_runs([RUN])
 
@@ -75,7 +78,8 @@ class Yard(FakeSiteClient):
 def serving(yard: Yard, folder: Path) -> Iterator[str]:
     """Serve its console; gives the address."""
     file = folder / "site.yaml"
-    file.write_text(yaml.safe_dump(site_data(42, 20000, machines={name: {"model": name} for name in MACHINES})))
+    machines = {name: {"model": model} for name, model in yard.models.items()}
+    file.write_text(yaml.safe_dump(site_data(42, 20000, machines=machines, **yard.site)))
     listener = Listener(fileno=socket.create_server(("127.0.0.1", 0)).detach())
     application = create_app(yard, FakeAudit(), load_site(str(file)), Access(None))  # type: ignore[arg-type]
     server = Server(application, listener, None)

@@ -31,7 +31,7 @@ from tms_ur.models import AddedTemplate, Event, Rearmed, Receipt, Run, Task, Tas
 from tms_ur.reason_view import of_line, view
 from tms_ur.scene_models import Scene, scene
 from tms_ur.start_models import ResumePlan
-from tms_ur.watch_models import EnabledAreas
+from tms_ur.watch_models import AreaChange, AreasChecked, EnabledAreas
 
 NOON = datetime(2026, 1, 31, 12, tzinfo=timezone.utc)
 HERE = "http://127.0.0.1:8080"
@@ -72,6 +72,7 @@ class FakeSiteClient:
     def __init__(self) -> None:
         self.board = Board(["zx200"])
         self.watching = FakeWatching()
+        self.palette = ""
         self.error: TmsError | None = None
         self.calls: list[tuple[object, ...]] = []
         self.shared = FakePlaces(self)
@@ -127,6 +128,14 @@ class FakeSiteClient:
         body.pose.position.x, body.pose.position.y, body.pose.position.z = 8.0, 2.0, 2.0
         area = SceneArea(record="dig", centre=Point(x=5.0), size=Vector3(x=2.0, y=1.0, z=0.5))
         return scene(machine, GetScene.Response(bodies=[body], areas=[area], way=[Point(x=6.0, z=1.0)]))
+
+    def check_areas(self, areas: dict[str, Any]) -> AreasChecked:
+        self._called("check_areas", areas)
+        change = AreaChange(id="yard", kind="changed", before=625.0, after=600.0, away=25.0, new=0.0)
+        return AreasChecked(id="a0", changes=[change], refusals=[])
+
+    def enable_areas(self, areas: dict[str, Any], shown: str, who: str) -> None:
+        self._called("enable_areas", areas, shown, who)
 
     def ground(self, cells: int) -> Ground:
         self._called("ground", cells)

@@ -3,6 +3,7 @@ import type { components } from "./api";
 
 type Models = components["schemas"];
 export type ActiveRun = Models["ActiveRun"];
+export type AreasChecked = Models["AreasChecked"];
 export type Checked = Models["Checked"];
 export type EnabledAreas = Models["EnabledAreas"];
 export type Event = Models["Event"];

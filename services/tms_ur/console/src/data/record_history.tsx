@@ -20,7 +20,7 @@ export function RecordHistory({ record, changes, onClose }: Props) {
   const section = useRef<HTMLElement>(null);
   const { times, lines } = useMemo(() => linesOf(changes), [changes]);
   // biome-ignore lint/correctness/useExhaustiveDependencies: the history of another record is shown
-  useEffect(() => section.current?.scrollIntoView(), [changes]);
+  useEffect(() => void section.current?.scrollIntoView(), [changes]);
   const title = t("values_of", { name: nameOf(record) });
   return (
     <section id="values" ref={section}>

@@ -4,14 +4,12 @@ import { mark } from "old/dom.js";
 import { memo, useMemo } from "react";
 import { useTranslation } from "react-i18next";
 import type { Machine, SiteMachine } from "../models";
+import { isOld } from "./old_place";
 import { shadow, svgPoints } from "./outline";
 import { anglesOf, links, placed, put } from "./pose";
 import { prisms } from "./shapes";
 
-const PLACE_OLD = 5; // s without a position: the machine may have driven on
 const TURNING = "z"; // the axis about which an upper body turns
-
-export const isOld = (machine: Machine) => (machine.place_age ?? 0) > PLACE_OLD;
 
 interface Props {
   machine: Machine;

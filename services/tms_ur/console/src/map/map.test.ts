@@ -1,8 +1,10 @@
 import { expect, test } from "vitest";
-import type { SiteMachine } from "../models";
-import { areasOf, middle } from "./areas";
+import type { SiteMachine, Stored } from "../models";
+import { added, changed, clicked, cornerRemoved, documentOf, draftOf } from "./area_draft";
+import { areasOf, flawOf, middle } from "./areas";
 import { corners, hull, shadow } from "./outline";
 import { links, placed, put } from "./pose";
+import { fieldsOf, poseOf } from "./pose_record";
 import { prisms } from "./shapes";
 import { lengthened } from "./trails";
 import { dragged, fitted, gridStep, placeAt, zoomed } from "./view";
@@ -174,4 +176,79 @@ test("areas of a document", () => {
   expect(area?.corners.length).toBe(4);
   expect(middle(area?.corners ?? [])).toEqual([2, 1]);
   expect(areasOf(null)).toEqual([]);
+});
+
+test("a place is only good where the areas let machines be", () => {
+  const square = (id: string, type: string, from: number, to: number) => ({
+    id,
+    type,
+    corners: [
+      [from, from],
+      [to, from],
+      [to, to],
+      [from, to],
+    ] as const,
+  });
+  const areas = [square("yard", "unmanned", 0, 10), square("pit", "blocked", 4, 6)].map((one) => ({
+    ...one,
+    corners: [...one.corners],
+  }));
+  expect(flawOf([2, 2], areas)).toBeNull();
+  expect(flawOf([5, 5], areas)?.[0]).toBe("place_forbidden");
+  expect(flawOf([12, 2], areas)?.[0]).toBe("place_outside");
+  expect(flawOf([12, 2], [])).toBeNull();
+});
+
+test("a record keeps the form that it has, and a new one is a quaternion", () => {
+  const stored = (values: Record<string, number>) => ({ values }) as unknown as Stored;
+  const turned = stored({ x: 1, y: 2, z: 3, qx: 0, qy: 0, qz: Math.SQRT1_2, qw: Math.SQRT1_2 });
+  expect(poseOf(turned)).toEqual({ x: 1, y: 2, heading: 90 });
+  const written = (record: Stored | null) =>
+    Object.fromEntries(fieldsOf({ x: 4, y: 5, heading: 180 }, record).map((one) => [one.name, one.value]));
+  expect(Object.keys(written(turned))).toEqual(["x", "y", "qz", "qw"]);
+  expect(written(turned).qz).toBeCloseTo(1);
+  expect(written(stored({ x: 1, y: 2, yaw: 30 }))).toEqual({ x: 4, y: 5, yaw: 180 });
+  expect(Object.keys(written(null)).sort()).toEqual(["qw", "qx", "qy", "qz", "x", "y", "z"]);
+  expect(poseOf(stored({ angle: 1 }))).toBeNull();
+});
+
+test("clicks draw an area, take up a corner and put it down", () => {
+  let draft = added(draftOf([]));
+  for (const place of [
+    [0, 0],
+    [10, 0],
+    [10, 10],
+    [0, 10],
+    [5, -1],
+  ] as const) {
+    draft = clicked(draft, place, 0.5);
+  }
+  const corners = () => draft.areas[0]?.corners;
+  expect(corners()).toEqual([
+    [0, 0],
+    [5, -1],
+    [10, 0],
+    [10, 10],
+    [0, 10],
+  ]);
+  draft = clicked(clicked(draft, [4.9, -1.1], 0.5), [5, 2.004], 0.5);
+  expect(corners()?.[1]).toEqual([5, 2]);
+  draft = cornerRemoved(clicked(draft, [5, 2], 0.5));
+  expect(corners()?.length).toBe(4);
+  expect(clicked(draftOf(draft.areas), [50, 50], 0.5).areas).toEqual(draft.areas); // none is chosen
+});
+
+test("a draft is written as areas are read, and says a speed only where it counts", () => {
+  const square = [
+    [0, 0],
+    [1, 0],
+    [1, 1],
+  ] as const;
+  let draft = changed(added(draftOf([])), { type: "speed_limit", corners: [...square] });
+  const [feature] = documentOf(draft.areas).features;
+  expect(feature?.properties).toEqual({ id: "area_1", type: "speed_limit", maximum_speed: 1 });
+  expect(feature?.geometry.coordinates[0]?.length).toBe(4);
+  draft = changed(draft, { type: "blocked" });
+  expect(documentOf(draft.areas).features[0]?.properties).toEqual({ id: "area_1", type: "blocked" });
+  expect(areasOf({ id: "a", by: "", areas: documentOf(draft.areas) })).toEqual(draft.areas);
 });

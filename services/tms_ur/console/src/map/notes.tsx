@@ -4,7 +4,7 @@ import { duration } from "old/dom.js";
 import { useTranslation } from "react-i18next";
 import type { Machine, State } from "../models";
 import { said } from "../texts";
-import { isOld } from "./machine_mark";
+import { isOld } from "./old_place";
 
 export function Notes({ state }: { state: State }) {
   const { t } = useTranslation();

@@ -18,7 +18,7 @@ export function useView(
   all: readonly Flat[],
   follow: Flat | undefined,
   onMove: () => void,
-  onPlace: (place: Flat) => void,
+  onPlace: (place: Flat, scale: number) => void,
 ): Viewing {
   const [size, setSize] = useState<Size>({ width: 0, height: 0 });
   const [own, setOwn] = useState<View | null>(null);
@@ -31,7 +31,7 @@ export function useView(
     onMove();
     setOwn((before) => from(before) && dragged(from(before) as View, dx, dy));
   };
-  const tap = (px: number, py: number) => view && onPlace(placeAt(view, size, px, py));
+  const tap = (px: number, py: number) => view && onPlace(placeAt(view, size, px, py), view.scale);
   const now = useRef({ zoom, move, tap });
   now.current = { zoom, move, tap };
   useEffect(() => {

@@ -24,8 +24,8 @@ export function ProcessLog({ name }: { name: string }) {
   useEffect(read, [read]);
   const shown = linesWith(text, words);
   // biome-ignore lint/correctness/useExhaustiveDependencies: the newest line is in sight whenever others are shown
-  useEffect(() => box.current?.scrollTo(0, box.current.scrollHeight), [shown]);
-  useEffect(() => box.current?.scrollIntoView({ block: "nearest" }), []);
+  useEffect(() => void box.current?.scrollTo(0, box.current.scrollHeight), [shown]);
+  useEffect(() => void box.current?.scrollIntoView({ block: "nearest" }), []);
   return (
     <section id="log" aria-label={t("log_of", { name })}>
       <div className="bar">

@@ -92,6 +92,9 @@ function Row({ task, before, changed, compare, children }: RowProps) {
         <Command className="go" label={t("start_task", { id })} work={() => startTask(task)}>
           {t("start")}
         </Command>
+        <a className="button" href={`#editor/${id}`} aria-label={t("ed_edit_task", { id })}>
+          {t("edit")}
+        </a>
         <Command label={t("download_task", { id })} work={() => download(id)}>
           {t("download")}
         </Command>

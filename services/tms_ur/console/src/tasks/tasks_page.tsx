@@ -19,6 +19,11 @@ export default function TasksPage() {
     <>
       <Upload stored={tasks} changed={again} />
       <h2>{t("tasks")}</h2>
+      <p>
+        <a className="button" href="#editor/new">
+          {t("ed_draw")}
+        </a>
+      </p>
       <Problem id="tasks_problem" error={error} />
       {list !== null && tasks.length === 0 && <p id="none_stored">{t("none_tasks_here")}</p>}
       <Stored tasks={tasks} changed={again} />
@@ -34,7 +39,9 @@ function Templates({ templates }: { templates: Template[] }) {
     <Table id="list_templates" label="templates" heads={["name", "model", "description", "added_at"]}>
       {templates.map((template) => (
         <tr key={template.name}>
-          <td data-part="name">{template.name}</td>
+          <td data-part="name">
+            <a href={`#editor/template/${encodeURIComponent(template.name)}`}>{template.name}</a>
+          </td>
           <td>{template.model_name}</td>
           <td>{template.description}</td>
           <td>{dateTime(template.added_at)}</td>

@@ -1,30 +1,17 @@
 // The drawing of a tree: it follows the running leaf, finished branches fold, and what is clicked on opens and tells more.
 import "@xyflow/react/dist/base.css";
 import "./tree.css";
-import {
-  type Edge,
-  MiniMap,
-  type NodeHandle,
-  Position,
-  ReactFlow,
-  ReactFlowProvider,
-  useReactFlow,
-} from "@xyflow/react";
+import { MiniMap, ReactFlow, ReactFlowProvider, useReactFlow } from "@xyflow/react";
 import { type ReactNode, useEffect, useMemo, useState } from "react";
 import { useTranslation } from "react-i18next";
 import type { Tree } from "../models";
+import { BOX, linesTo } from "./boxes";
 import { Details } from "./details";
-import { HEIGHT, type Placed, placed, WIDTH } from "./layout";
+import { type Placed, placed, WIDTH } from "./layout";
 import { type BoxNode, NodeBox, WORDS } from "./node_box";
 import { type NodeState, nodesOf, openPaths, stateOf, type TreeNode } from "./shape";
 
 const KINDS = { box: NodeBox };
-// Told and not measured, since nodes outside of the picture are not drawn: lines go to them, and the overview has them.
-const SIZE = { width: WIDTH, height: HEIGHT };
-const HANDLES: NodeHandle[] = [
-  { type: "target", position: Position.Top, x: WIDTH / 2, y: 0, width: 1, height: 1 },
-  { type: "source", position: Position.Bottom, x: WIDTH / 2, y: HEIGHT, width: 1, height: 1 },
-];
 const FIT = { maxZoom: 1, minZoom: 0.4, padding: 0.1 };
 const LEGIBLE = 0.8; // zoom at which labels can be read from an arm's length
 const MOVE = { duration: 300 }; // ms
@@ -64,24 +51,13 @@ function Flow({ tree, digits, leaf, last, facts }: Props) {
       id: node.path,
       type: "box",
       position: { x, y },
-      width: WIDTH,
-      height: HEIGHT,
-      measured: SIZE,
-      handles: HANDLES,
+      ...BOX,
       selected: node.path === chosen,
       ariaLabel: `${node.type} ${node.name}: ${t(WORDS[state])}`,
       data: { node, state, was: last.get(node.index) ?? "idle", current: node.path === leaf, hidden },
     };
   });
-  const edges: Edge[] = places
-    .filter(({ node }) => node.path !== "0")
-    .map(({ node }) => ({
-      id: node.path,
-      source: node.path.slice(0, node.path.lastIndexOf(".")),
-      target: node.path,
-      type: "smoothstep",
-      focusable: false,
-    }));
+  const edges = linesTo(places);
   const choose = (path: string) => {
     setChosen(path);
     setByHand((before) => (nodes.get(path)?.children.length ? new Map(before).set(path, !open.has(path)) : before));
@@ -120,7 +96,7 @@ function Flow({ tree, digits, leaf, last, facts }: Props) {
 }
 
 /** `at`: where the leaf stands that works or waits. */
-function Bar({ at, onAll }: { at: Placed | undefined; onAll: () => void }) {
+function Bar({ at, onAll }: { at: Placed<TreeNode> | undefined; onAll: () => void }) {
   const { t } = useTranslation();
   const flow = useReactFlow();
   const [following, setFollowing] = useState(true);
