@@ -5,6 +5,7 @@ from tms_reason.reason import Reason
 from tms_reason.remedies import EDIT_CONFIG, ESCAPE, INSPECT, Remedy
 
 DRAW_AGAIN = Remedy("draw", "", "Draw the area again, and export the file anew")
+CHECK_AGAIN = Remedy("check", "", "Check the areas again")
 LOOK_AROUND = Remedy("look", "", "Look who is in the area, and re-arm once it is free")
 SEE_TRACKER = Remedy("look", "", "Look at the tracker and at its PC")
 DRIVE_OUT = Remedy("take", "tms take {machine}", "Drive the machine by hand to where it may be")
@@ -41,6 +42,8 @@ class AreaTwice(Reason, text="two areas are called {area}", action=EDIT_CONFIG):
 class NoUnmanned(Reason, text="no area is unmanned: no machine could move anywhere", action=EDIT_CONFIG): pass
 class NothingUsable(Reason, text="other areas cover every unmanned one: no machine could move anywhere",
     action=EDIT_CONFIG): pass
+class AreasNotEnabledBy(Reason, text="{machine} refuses the areas: {why}"): machine: str; why: Reason
+class AreasNotShown(Reason, text="these are other areas than those that were checked", action=CHECK_AGAIN): pass
 
 # people and vehicles
 class TrackerTypeWrong(Reason, text="a tracker of the kind {kind} sends one of {types}", action=EDIT_CONFIG):

@@ -1,12 +1,12 @@
 """What the verbs of `tms areas` share: the areas of the site's files and of its gateways, and how they differ."""
 
 import json
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from tms_areas.reasons import AreasNotEnabledBy
 from tms_cli import session
-from tms_cli.reasons import AreaFileUnread, AreasNotEnabledBy, AreasNotReached, NoAreas
+from tms_cli.reasons import AreaFileUnread, AreasNotReached, NoAreas
 from tms_cli.words import padded, say
 from tms_config.config import Site
 from tms_reason import wire
@@ -54,35 +54,6 @@ def _to_map(site: Site) -> "ToMap | None":
         return None
     frame = SiteFrame(ground.origin)
     return lambda longitude, latitude: frame.to_map(longitude, latitude, WGS84)
-
-
-@dataclass(frozen=True)
-class Change:
-    """What one set says of an area otherwise than another one."""
-
-    id: str
-    kind: str  # added, removed, changed
-    before: float  # m2
-    after: float  # m2
-    away: float  # m2 that only the one before covers
-    new: float  # m2 that only the one after covers
-
-
-def changes(before: "AreaSet | None", after: "AreaSet") -> list[Change]:
-    """Which areas differ."""
-    from shapely import Polygon
-
-    old = {} if before is None else {one.id: one for one in before.areas}
-    new = {one.id: one for one in after.areas}
-    found = []
-    for name in sorted({*old, *new}):
-        was, now = old.get(name), new.get(name)
-        if was == now:
-            continue
-        kind = "added" if was is None else "removed" if now is None else "changed"
-        a, b = (Polygon() if one is None else one.polygon for one in (was, now))
-        found.append(Change(name, kind, a.area, b.area, a.difference(b).area, b.difference(a).area))
-    return found
 
 
 # gateways

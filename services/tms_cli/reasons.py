@@ -93,7 +93,6 @@ class AreaFileUnread(Reason, text="{file} cannot be read ({problem})", action=OT
 class AreaFileThere(Reason, text="{file} is there already", action=OTHER_NAME): file: str
 class AreasNotReached(Reason, text="the gateway of {machine} tells nothing of areas: {why}", action=RESTART):
     machine: str; why: Reason; process: str
-class AreasNotEnabledBy(Reason, text="{machine} refuses the areas: {why}"): machine: str; why: Reason
 class NoBrowser(Reason, text="there is no chromium on this PC", action=OTHER_BROWSER): url: str
 class FieldValue(Reason, text="{where}, field {field}: {why}"): where: str; field: str; why: Reason
 class NotAFiniteNumber(Reason, text="{value} is not a finite number", action=FINITE): value: str

@@ -1,5 +1,7 @@
 """Models of the commands that clients send; those about records are in data_models.py."""
 
+from typing import Any
+
 from pydantic import ConfigDict, Field
 
 from tms_reason.names import Name, Text
@@ -50,6 +52,18 @@ class RearmAsked(Command):
     """A step of a re-arm."""
 
     token: str = Field(default="", max_length=100, description="of the first step, empty in the first step")
+
+
+class AreasGiven(Command):
+    """Areas to check."""
+
+    areas: dict[str, Any] = Field(description="GeoJSON with the frame `map`")
+
+
+class AreasWanted(AreasGiven):
+    """Areas to enable."""
+
+    id: str = Field(max_length=64, description="of the set, as the check told it: it is enabled as it was shown")
 
 
 class AnswerGiven(Command):

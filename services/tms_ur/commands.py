@@ -18,7 +18,18 @@ from tms_decision.reasons import SoftwareStopBy
 from tms_reason.errors import TmsError
 from tms_reason.reason import Reason
 from tms_ur.access import Person
-from tms_ur.command_models import AnswerGiven, Nothing, RearmAsked, StartRun, StopAsked, TaskGiven, TemplateGiven
+from tms_ur.angle_limits import check_angles
+from tms_ur.command_models import (
+    AnswerGiven,
+    AreasGiven,
+    AreasWanted,
+    Nothing,
+    RearmAsked,
+    StartRun,
+    StopAsked,
+    TaskGiven,
+    TemplateGiven,
+)
 from tms_ur.data_models import FieldGiven, RecordGiven
 from tms_ur.models import Added, AddedTemplate, Rearmed, Receipt, RunAsked
 from tms_ur.place_models import Revoked
@@ -26,6 +37,7 @@ from tms_ur.problems import Admin, Operator, Viewer, problems
 from tms_ur.reading import MachineName, PlaceName, ProcessName, RunId, TaskId
 from tms_ur.reasons import BadValue, IntTooLong, NotFinite, NotOfType, NotUnicode, Starting
 from tms_ur.security import source
+from tms_ur.watch_models import AreasChecked
 
 if TYPE_CHECKING:
     from tms_ur.audit import Audit
@@ -44,8 +56,9 @@ def add(app: FastAPI, client: "SiteClient", audit: "Audit", site: Site) -> None:
     note = _Note(audit)
     _runs(app, client, note)
     _machines(app, client, note, site)
-    _stored(app, client, note)
+    _stored(app, client, note, site)
     _places(app, client, note)
+    _areas(app, client, note)
     _processes(app, client, note)
     _interrupted(app, client, note)
 
@@ -151,7 +164,7 @@ def _stop_all(client: "SiteClient", machines: list[str], who: str) -> list[Recei
         return list(pool.map(lambda machine: client.stop(machine, cause), machines))
 
 
-def _stored(app: FastAPI, client: "SiteClient", note: _Note) -> None:
+def _stored(app: FastAPI, client: "SiteClient", note: _Note, site: Site) -> None:
     @app.post("/api/tasks", status_code=201, summary="Store a tree as a task", responses=ANSWERS)
     def add_task(request: Request, given: TaskGiven, person: Admin) -> Added:
         number, there = client.add_task(given.xml, given.description)
@@ -172,6 +185,8 @@ def _stored(app: FastAPI, client: "SiteClient", note: _Note) -> None:
     @app.post("/api/parameters", summary="Set fields of a record in one step", responses=ANSWERS)
     def set_parameter(request: Request, given: RecordGiven, person: Admin) -> Nothing:
         values = {field.name: _typed(field) for field in given.fields}
+        if given.model_name in site.file.machines:
+            check_angles(site.model_of(given.model_name), values)
         reported = ", ".join(f"{name}={value}" for name, value in values.items())
         who = note(request, person, "set_parameter", f"{given.model_name}/{given.record_name} {reported}"[:500])
         client.set_parameter(given.model_name, given.record_name, values, who, given.create, given.type)
@@ -214,6 +229,18 @@ def _places(app: FastAPI, client: "SiteClient", note: _Note) -> None:
     def revoke(request: Request, name: PlaceName, _: Nothing, person: Operator) -> Revoked:
         who = note(request, person, "revoke_place_asked", name)
         return Revoked(place=name, holder=client.shared.revoke(name, who))
+
+
+def _areas(app: FastAPI, client: "SiteClient", note: _Note) -> None:
+    @app.post("/api/areas/check", summary="What would change if areas were enabled; enables nothing", responses=ANSWERS)
+    def check(given: AreasGiven, person: Viewer) -> AreasChecked:
+        return client.check_areas(given.areas)
+
+    @app.post("/api/areas/enable", summary="Let areas count from now on, at every gateway", responses=ANSWERS)
+    def enable(request: Request, given: AreasWanted, person: Admin) -> Nothing:
+        who = note(request, person, "enable_areas_asked", given.id)
+        client.enable_areas(given.areas, given.id, who)
+        return Nothing()
 
 
 def _processes(app: FastAPI, client: "SiteClient", note: _Note) -> None:

@@ -28,6 +28,7 @@ from tms_msg_ts.srv import CheckTask
 
 from tms_config.clock import monotonic
 from tms_config.config import Site
+from tms_config.processes import table
 from tms_decision.gateway.stops import RECEIPT_LIMIT
 from tms_machine.places import PERIOD, Places
 from tms_machine.values import to_parameters
@@ -37,15 +38,18 @@ from tms_reason.reason import Reason
 from tms_ros.node import Ros
 from tms_ur import messages
 from tms_ur.answers import checked
-from tms_ur.area_client import let_back
+from tms_ur.area_client import check_areas, enable_areas, let_back
 from tms_ur.board import Board
 from tms_ur.data_models import Change, Record, Sensing
+from tms_ur.ground_client import ground
+from tms_ur.ground_models import Ground
 from tms_ur.models import AddedTemplate, Event, Host, Place, Rearmed, Receipt, Run, Task, TaskText, Template
 from tms_ur.place_client import PlaceClient
 from tms_ur.reason_view import of_error, of_line, view
 from tms_ur.reasons import UnknownProcess
 from tms_ur.run_calls import CALL_LIMIT, RunCalls
 from tms_ur.scene_models import Scene, scene
+from tms_ur.watch_models import AreasChecked
 from tms_ur.watching import Watching
 
 PROCESS_LIMIT = 15.0  # s for a process to end and to be started
@@ -56,8 +60,9 @@ class SiteClient(RunCalls):
 
     def __init__(self, ros: Ros, site: Site) -> None:
         super().__init__(ros)
-        names = list(site.file.machines)
+        self._machines = names = list(site.file.machines)
         self.board = Board(names)
+        self._on_demand = {row.full for row in table(site) if not row.autostart}
         self.watching, self.shared = Watching(ros, site, self.board), PlaceClient(ros, self.board)
         self.palette = ""  # the nodes of trees, as XML; empty until the scheduler has told them
         self._inputs: tuple[list[InputState], float] | None = None  # read and replaced in one step
@@ -88,7 +93,8 @@ class SiteClient(RunCalls):
         self.palette = message.data
 
     def _on_processes(self, message: Processes) -> None:
-        self.board.put_host(Host(name=message.host, processes=[messages.process(row) for row in message.processes]))
+        rows = [messages.process(row, row.name in self._on_demand) for row in message.processes]
+        self.board.put_host(Host(name=message.host, processes=rows))
 
     def _on_inputs(self, message: InputStates) -> None:
         self._inputs = (list(message.inputs), monotonic())
@@ -209,6 +215,14 @@ class SiteClient(RunCalls):
         """Let a machine that stands outside its areas be moved back in; a TmsError says why not."""
         let_back(self._ros, machine, who)
 
+    def check_areas(self, areas: dict[str, Any]) -> AreasChecked:
+        """What would change if these areas were enabled; a TmsError says what is wrong with them."""
+        return check_areas(self._ros, self._machines, self.watching.areas(), areas)
+
+    def enable_areas(self, areas: dict[str, Any], shown: str, who: str) -> None:
+        """Enable areas at every gateway; a TmsError says who refuses."""
+        enable_areas(self._ros, self._machines, areas, shown, who)
+
     def scene(self, machine: str) -> Scene:
         """What the planner of a machine plans among now.
 
@@ -216,6 +230,10 @@ class SiteClient(RunCalls):
             TmsError: something of it is not known, or the planner is away.
         """
         return scene(machine, self._ask(GetScene, f"/{machine}/rp/get_scene"))
+
+    def ground(self, cells: int) -> Ground:
+        """The ground of the site in about so many cells at most; a TmsError says why it is not told."""
+        return ground(self._ros, cells)
 
     # processes
 

@@ -33,6 +33,25 @@ class EnabledAreas(Model):
     areas: dict[str, Any] = Field(default={}, description="GeoJSON, its coordinates in the frame `map`, m")
 
 
+class AreaChange(Model):
+    """What other areas would say of one area."""
+
+    id: str
+    kind: Literal["added", "removed", "changed"]
+    before: float = Field(description="m2")
+    after: float = Field(description="m2")
+    away: float = Field(description="m2 that only the area before covers")
+    new: float = Field(description="m2 that only the area after covers")
+
+
+class AreasChecked(Model):
+    """What it would mean to enable areas; nothing was enabled."""
+
+    id: str = Field(description="of the set")
+    changes: list[AreaChange] = Field(description="against what is enabled now")
+    refusals: list[ReasonView] = Field(description="why machines would refuse it; empty: none would")
+
+
 class Watched(Model):
     """What a gateway watches besides the motion of its machine."""
 

@@ -3,7 +3,7 @@
 From a node's change, by the scheduler's clock, to the picture: the page itself takes the time when the state of a node
 is in the document and painted. The floor is an answer of the same server to the same page. The cost of consoles is the
 processor time of `tms:ur` with twenty of them less that without; its floor is the latter. A press of the stop beside
-connections that hang is compared with the same press without them.
+connections that hang is compared with the same press without them. The site in 3D has a page of its own (rig/space.py).
 """
 
 from __future__ import annotations
@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING, Any
 import psutil
 import yaml
 
+from bench.rig.space import space
 from bench.runner import Figure
 from conftest import Mesh, claimed_domain, ports_of, site_data
 from hanging import hanging
@@ -60,6 +61,7 @@ PING = """async (rounds) => {
 def measure() -> Iterable[Figure]:
     with ExitStack() as stack:
         domain, folder = stack.enter_context(claimed_domain()), Path(stack.enter_context(tempfile.TemporaryDirectory()))
+        yield space(folder)  # before the mesh takes processor time
         port = ports_of(domain)
         site = folder / "site.yaml"
         site.write_text(yaml.safe_dump(site_data(domain, port)))

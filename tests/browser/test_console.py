@@ -443,13 +443,13 @@ def test_processes_logs_and_restart(page: Page, address: str, mesh: Mesh) -> Non
     page.get_by_role("button", name="Restart zx200:rp", exact=True).click()
     page.locator("#dialog_yes").click()
     expect(page.locator("#message")).to_have_text("zx200:rp was restarted.")
-    expect(page.locator("#list_processes tr", has_text="zx200:rp")).to_contain_text("Running")
+    expect(page.locator("[data-process='zx200:rp']")).to_contain_text("Running")
     mesh.wait_ready()
 
 
 def test_the_site_shows_place_and_arm(page: Page, address: str, mesh: Mesh) -> None:
-    open_page(page, address, "site")
-    expect(page.locator("#map [data-machine=zx200]")).to_have_count(1)
+    open_page(page, address, "map")
+    expect(page.locator("#map_box [data-machine=zx200]")).to_have_count(1)
     expect(page.locator("#arms svg")).to_have_count(1)
     points = page.locator("#arms .arm").get_attribute("points")
     assert points

@@ -124,14 +124,76 @@ def test_a_field_of_a_run_that_nobody_has_translated_is_shown(page: Page, addres
 
 def test_an_old_place_is_marked(page: Page, address: str, yard: Yard) -> None:
     yard.board.put_place("ic120", Place(x=1.0, y=2.0, yaw=0.0))
-    page.goto(f"{address}/#site")
-    mark = page.locator("#map [data-machine=ic120]")
+    page.goto(f"{address}/#map")
+    mark = page.locator("#map_box [data-machine=ic120]")
     expect(mark).to_have_attribute("class", "machine standing")
     expect(page.locator("#unplaced li")).to_have_text(["zx200: no position has been heard."])
     yard.now += 7
     yard.receive()  # its joints go on
     expect(mark).to_have_attribute("class", "machine silent")
     expect(page.locator("#unplaced li").last).to_have_text("ic120: no position for 7.0 s; the map shows the last one.")
+
+
+def test_the_map_stays_where_it_is_until_it_is_moved(page: Page, address: str, yard: Yard) -> None:
+    yard.board.put_place("ic120", Place(x=1.0, y=2.0, yaw=0.0))
+    page.goto(f"{address}/#map")
+    picture, mark = page.locator("#site_map"), page.locator("#map_box [data-machine=ic120] polygon").first
+    before, drawn = picture.get_attribute("viewBox"), mark.get_attribute("points")
+    yard.board.put_place("ic120", Place(x=90.0, y=2.0, yaw=0.0))
+    expect(mark).not_to_have_attribute("points", drawn or "")
+    expect(picture).to_have_attribute("viewBox", before or "")
+    page.locator("#follow").select_option("ic120")
+    expect(picture).not_to_have_attribute("viewBox", before or "")
+    page.goto(f"{address}/#map/3d")
+    expect(page.locator("#space")).to_have_attribute("data-pictures", re.compile(r"\d"))
+
+
+def test_a_place_on_the_map_becomes_a_record(page: Page, address: str, yard: Yard) -> None:
+    yard.board.put_place("ic120", Place(x=1.0, y=2.0, yaw=0.0))
+    page.goto(f"{address}/#map")
+    expect(page.locator("#map_box [data-area=yard]")).to_be_visible()
+    box, form = page.locator("#map_box"), page.locator("#place_form")
+    box.click(position={"x": 8, "y": 8})
+    expect(form.get_by_role("alert")).to_contain_text("lies outside the areas where machines may be")
+    form.get_by_label("Name of the record").fill("HERE")
+    expect(form.get_by_role("button", name="Save")).to_have_count(0)
+    box.click()
+    form.get_by_label("Name of the record").fill("HERE")
+    form.get_by_label("Heading").fill("180")
+    form.get_by_role("button", name="Save").click()
+    expect(page.locator("#message")).to_have_text("ic120/HERE was saved.")
+    (call,) = (one for one in yard.calls if one[0] == "set_parameter")
+    values: Any = call[3]
+    assert (call[1], call[2], call[5]) == ("ic120", "HERE", True)
+    assert values["x"] == pytest.approx(7.5, abs=0.1) and values["qz"] == pytest.approx(1.0)
+
+
+def test_areas_are_drawn_and_enabled_as_they_were_checked(page: Page, address: str, yard: Yard) -> None:
+    yard.board.put_place("ic120", Place(x=1.0, y=2.0, yaw=0.0))
+    page.goto(f"{address}/#map")
+    expect(page.locator("#map_box [data-area=yard]")).to_be_visible()
+    page.get_by_role("button", name="Draw areas").click()
+    page.get_by_role("button", name="New area").click()
+    box, editor = page.locator("#map_box"), page.locator("#area_editor")
+    editor.get_by_label("Name").fill("pit")
+    editor.get_by_label("Type").select_option("blocked")
+    for x, y in ((600, 200), (700, 200), (700, 300)):
+        box.click(position={"x": x, "y": y})
+    expect(box.locator("[data-draft=pit]")).to_have_class(re.compile("blocked"))
+    editor.get_by_role("button", name="Check").click()
+    expect(editor.locator("[data-part=changes]")).to_have_text(
+        "yard: changed, 625.0 m² to 600.0 m², 25.0 m² less, 0.0 m² more"
+    )
+    with page.expect_download() as file:
+        editor.get_by_role("button", name="Save as GeoJSON").click()
+    assert file.value.suggested_filename == "areas.geojson"
+    editor.get_by_role("button", name="Enable").click()
+    expect(page.locator("#dialog_text")).to_contain_text("25.0 m² less")
+    page.locator("#dialog_yes").click()
+    expect(page.locator("#message")).to_have_text("The areas are enabled.")
+    (call,) = (one for one in yard.calls if one[0] == "enable_areas")
+    drawn: Any = call[1]
+    assert [one["properties"]["id"] for one in drawn["features"]] == ["yard", "pit"] and call[2] == "a0"
 
 
 def test_the_processes_of_a_silent_pc_are_unknown(page: Page, address: str, yard: Yard) -> None:
@@ -141,6 +203,27 @@ def test_the_processes_of_a_silent_pc_are_unknown(page: Page, address: str, yard
     expect(row).to_contain_text("Running5.0 s")
     yard.now += 7
     expect(row).to_contain_text("Unknown---")
+
+
+def test_a_stopped_process_is_a_fault_only_where_it_should_run(page: Page, address: str, yard: Yard) -> None:
+    """And the alarm leads to its log."""
+    rows = [Process(name="zx200:st_swing", state="STOPPED", on_demand=True), Process(name="tms:db", state="STOPPED")]
+    yard.board.put_host(Host(name="pc", processes=rows))
+    page.goto(f"{address}/#system")
+    expect(page.locator("#list_processes tr")).to_contain_text(["tms:dbpc! Down", "zx200:st_swingpc■ On demand"])
+    expect(page.locator("#list_alarms li")).to_have_text(["▲ Process tms:db does not run.Log"])
+    page.get_by_role("link", name="Log").click()
+    expect(page.locator("#log_text")).to_have_text("event=started")
+    expect(page.locator("#log_text")).to_be_in_viewport()
+    page.locator("#log_filter").fill("ended")
+    expect(page.locator("#log_text")).to_be_empty()
+
+
+def test_the_history_of_a_record_is_a_plot(page: Page, address: str, yard: Yard) -> None:
+    page.goto(f"{address}/#data")
+    page.get_by_role("button", name="History of zx200/pose").click()
+    expect(page.locator("#values canvas")).to_be_visible()
+    expect(page.locator("#list_values")).to_contain_text("d: 1")
 
 
 def test_ages_are_told_by_the_clock_of_the_site(page: Page, address: str, yard: Yard) -> None:

@@ -19,7 +19,7 @@ from tms_ur.access import Access
 from tms_ur.api import create_app
 from tms_ur.board import Board
 from tms_ur.connections import Listener
-from tms_ur.data_models import Record
+from tms_ur.data_models import Change, Record
 from tms_ur.models import ActiveRun, AddedTemplate, Event, Machine, Rearmed, Run
 from tms_ur.node import Server
 from unit.tms_ur.fakes import NOON, FakeAudit, FakeSiteClient
@@ -31,17 +31,20 @@ RUN = ActiveRun(run_id="r-1", task_id=4, state="running", machines=["zx200"])
 class Yard(FakeSiteClient):
     """Two machines, and a clock that the test turns."""
 
-    def __init__(self) -> None:
+    def __init__(self, models: dict[str, str] | None = None, **site: object) -> None:
+        """`models`: of its machines, by their names; `site`: what else its file says."""
         super().__init__()
+        self.models = models or {name: name for name in MACHINES}
+        self.site = site
         self.now = 100.0
-        self.board = Board(MACHINES, lambda: self.now)
+        self.board = Board(self.models, lambda: self.now)
         self.slow = threading.Event()  # until then zx200 does not answer
         self.journals: dict[str, list[Event]] = {}
         self.taken = False  # whether the template has another text
 
     def receive(self, **facts: Any) -> None:
         """Both machines and the scheduler."""
-        for name in MACHINES:
+        for name in self.models:
             self.board.put_machine(Machine(name=name, state="standing", joint_age=0.1, **facts))
         self.board.put_runs([RUN])
 
@@ -67,12 +70,16 @@ class Yard(FakeSiteClient):
         facts = {"type": "static", "description": "", "source": "cli", "updated_at": written, "values": {"d": 1.0}}
         return [Record(model_name="zx200", record_name="pose", **facts)]
 
+    def parameter_history(self, model_name: str, record_name: str, limit: int) -> list[Change]:
+        return [Change(stamp=NOON, source="cli", values={"d": 1.0})]
+
 
 @contextmanager
 def serving(yard: Yard, folder: Path) -> Iterator[str]:
     """Serve its console; gives the address."""
     file = folder / "site.yaml"
-    file.write_text(yaml.safe_dump(site_data(42, 20000, machines={name: {"model": name} for name in MACHINES})))
+    machines = {name: {"model": model} for name, model in yard.models.items()}
+    file.write_text(yaml.safe_dump(site_data(42, 20000, machines=machines, **yard.site)))
     listener = Listener(fileno=socket.create_server(("127.0.0.1", 0)).detach())
     application = create_app(yard, FakeAudit(), load_site(str(file)), Access(None))  # type: ignore[arg-type]
     server = Server(application, listener, None)

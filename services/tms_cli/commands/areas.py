@@ -3,6 +3,7 @@
 import getpass
 import json
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
@@ -10,6 +11,9 @@ from tms_cli import area_sets, session
 from tms_cli.reasons import AreaFileThere, NameTaken
 from tms_cli.words import Group, padded, say
 from tms_reason.errors import TmsError
+
+if TYPE_CHECKING:
+    from tms_areas.changes import Change
 
 FILE = click.Path(path_type=Path)
 
@@ -90,10 +94,12 @@ def enable(who: str, yes: bool, as_json: bool) -> None:
       tms areas enable
       tms areas enable --by "T. Yamada" --yes
     """
+    from tms_areas.changes import changes
+
     wanted, machines = area_sets.configured(session.site()), area_sets.machines()
     with session.ros() as node:
         before = {machine: area_sets.enabled(node, machine)[1] for machine in machines}
-        _tell({change for old in before.values() for change in area_sets.changes(old, wanted)})
+        _tell({change for old in before.values() for change in changes(old, wanted)})
         if not yes:
             click.confirm(say("Enable these areas for all machines?"), abort=True, err=True)
         for only_check in (True, False):
@@ -115,10 +121,12 @@ def diff(machine: str | None, as_json: bool) -> None:
       tms areas diff
       tms areas diff zx200 --json
     """
+    from tms_areas.changes import changes
+
     wanted = area_sets.configured(session.site())
     chosen = session.machines((machine,), False)[0] if machine else area_sets.machines()[0]
     with session.ros() as node:
-        found = area_sets.changes(area_sets.enabled(node, chosen)[1], wanted)
+        found = changes(area_sets.enabled(node, chosen)[1], wanted)
     if as_json:
         session.show_json([vars(one) for one in found])
     else:
@@ -183,7 +191,7 @@ def export(file: Path, vda5050: bool, as_json: bool) -> None:
         click.echo(f"{file}: {found.id[:12]}")
 
 
-def _tell(found: set[area_sets.Change]) -> None:
+def _tell(found: "set[Change]") -> None:
     """Print what changes, for people."""
     for one in sorted(found, key=lambda one: (one.id, one.kind)):
         line = say("{before:.1f} m² -> {after:.1f} m², {away:.1f} m² less, {new:.1f} m² more", **vars(one))

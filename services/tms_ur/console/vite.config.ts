@@ -22,6 +22,7 @@ export default defineConfig(({ command }) => ({
     emptyOutDir: true,
     assetsInlineLimit: 0, // the policy of the site lets no data: address in
     modulePreload: { polyfill: false },
+    chunkSizeWarningLimit: 600, // kB: three, which only the picture in 3D loads
   },
   server: { fs: { allow: ["../../.."] } }, // tests read tasks of the field
   test: { environment: "jsdom", cache: false, fsModuleCache: false, testTimeout: 120_000 }, // nothing is written beside the sources,

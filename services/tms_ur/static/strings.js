@@ -26,11 +26,6 @@ export const inLanguage = (texts) => texts[language];
 /** The text of a reason; empty for none. */
 export const said = (reason) => (reason ? inLanguage(reason.text) : "");
 
-/** Date and time in the format of the language. */
-export function when(iso) {
-  return iso ? new Date(iso).toLocaleString(language === "ja" ? "ja-JP" : "en-GB") : "-";
-}
-
 /** Writes anew the texts that the server has sent in every language: elements with data-said in a part of the page. */
 export function sayAgain(part) {
   for (const element of part.querySelectorAll("[data-said]")) {

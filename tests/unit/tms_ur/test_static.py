@@ -119,7 +119,7 @@ def test_files_are_served() -> None:
     client = Client(app(FakeSiteClient()))
     assert client.get("/").text == (BUILT / "index.html").read_text(encoding="utf-8")
     assert client.get("/dom.js").headers["content-type"].startswith("text/javascript")
-    assert client.get("/pages/data.js").status_code == client.get("/panel.html").status_code == 200
+    assert client.get("/pages/site.js").status_code == client.get("/panel.html").status_code == 200
     assert client.get("/../api.py").status_code == client.get("/%2e%2e/api.py").status_code == 404
 
 

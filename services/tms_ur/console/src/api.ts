@@ -29,7 +29,7 @@ export interface paths {
             cookie?: never;
         };
         /** The site's machines and their bodies */
-        get: operations["site_info_api_site_get"];
+        get: operations["site_bodies_api_site_get"];
         put?: never;
         post?: never;
         delete?: never;
@@ -366,6 +366,23 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/ground": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** Heights of the ground and of the design, of the whole site */
+        get: operations["ground_api_ground_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/machines/{name}/scene": {
         parameters: {
             query?: never;
@@ -530,6 +547,40 @@ export interface paths {
         put?: never;
         /** Take a shared place from its holder */
         post: operations["revoke_api_places__name__revoke_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/areas/check": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /** What would change if areas were enabled; enables nothing */
+        post: operations["check_api_areas_check_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/areas/enable": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /** Let areas count from now on, at every gateway */
+        post: operations["enable_api_areas_enable_post"];
         delete?: never;
         options?: never;
         head?: never;
@@ -728,6 +779,109 @@ export interface components {
             yes: boolean;
         };
         /**
+         * AreaChange
+         * @description What other areas would say of one area.
+         */
+        AreaChange: {
+            /** Id */
+            id: string;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            kind: "added" | "removed" | "changed";
+            /**
+             * Before
+             * @description m2
+             */
+            before: number;
+            /**
+             * After
+             * @description m2
+             */
+            after: number;
+            /**
+             * Away
+             * @description m2 that only the area before covers
+             */
+            away: number;
+            /**
+             * New
+             * @description m2 that only the area after covers
+             */
+            new: number;
+        };
+        /**
+         * AreasChecked
+         * @description What it would mean to enable areas; nothing was enabled.
+         */
+        AreasChecked: {
+            /**
+             * Id
+             * @description of the set
+             */
+            id: string;
+            /**
+             * Changes
+             * @description against what is enabled now
+             */
+            changes: components["schemas"]["AreaChange"][];
+            /**
+             * Refusals
+             * @description why machines would refuse it; empty: none would
+             */
+            refusals: components["schemas"]["ReasonView"][];
+        };
+        /**
+         * AreasGiven
+         * @description Areas to check.
+         */
+        AreasGiven: {
+            /**
+             * Areas
+             * @description GeoJSON with the frame `map`
+             */
+            areas: {
+                [key: string]: unknown;
+            };
+        };
+        /**
+         * AreasWanted
+         * @description Areas to enable.
+         */
+        AreasWanted: {
+            /**
+             * Areas
+             * @description GeoJSON with the frame `map`
+             */
+            areas: {
+                [key: string]: unknown;
+            };
+            /**
+             * Id
+             * @description of the set, as the check told it: it is enabled as it was shown
+             */
+            id: string;
+        };
+        /**
+         * BladeShape
+         * @description The lower edge of a blade.
+         */
+        BladeShape: {
+            /** Link */
+            link: string;
+            /**
+             * Edge
+             * @description x, z on its link, m
+             */
+            edge: number[];
+            /**
+             * Width
+             * @description m
+             */
+            width: number;
+        };
+        /**
          * Box
          * @description Corners of a box.
          */
@@ -742,6 +896,24 @@ export interface components {
              * @description m
              */
             max: number[];
+        };
+        /**
+         * BucketShape
+         * @description The inside of a bucket, the same over its width.
+         */
+        BucketShape: {
+            /** Link */
+            link: string;
+            /**
+             * Section
+             * @description x, z on its link, from the rear lip to the cutting edge, m
+             */
+            section: number[][];
+            /**
+             * Width
+             * @description m
+             */
+            width: number;
         };
         /**
          * Change
@@ -880,6 +1052,54 @@ export interface components {
             reason: components["schemas"]["ReasonView"];
         };
         /**
+         * Ground
+         * @description Heights at the middles of square cells in `map`, row by row along y; no rows where the site keeps no ground.
+         */
+        Ground: {
+            /**
+             * X0
+             * @description m: the corner of the first cell with the least x ...
+             * @default 0
+             */
+            x0: number;
+            /**
+             * Y0
+             * @description m: ... and the least y
+             * @default 0
+             */
+            y0: number;
+            /**
+             * Cell
+             * @description m, side of a cell
+             * @default 1
+             */
+            cell: number;
+            /**
+             * Rows
+             * @description along y
+             * @default 0
+             */
+            rows: number;
+            /**
+             * Columns
+             * @description along x
+             * @default 0
+             */
+            columns: number;
+            /**
+             * Heights
+             * @description m, null: unknown
+             * @default []
+             */
+            heights: (number | null)[];
+            /**
+             * Design
+             * @description m that it should become; null: no design there; empty: none at all
+             * @default []
+             */
+            design: (number | null)[];
+        };
+        /**
          * Host
          * @description One PC of the site; its agent speaks every 2 s, and at once when something changes.
          */
@@ -917,6 +1137,33 @@ export interface components {
             velocity: number;
         };
         /**
+         * JointOrigin
+         * @description Where a joint is on its parent link; first turned by `pitch` about y, then by its angle about `axis`.
+         */
+        JointOrigin: {
+            /** Joint */
+            joint: string;
+            /** Parent */
+            parent: string;
+            /** Child */
+            child: string;
+            /**
+             * Xyz
+             * @description m
+             */
+            xyz: number[];
+            /**
+             * Pitch
+             * @description rad
+             */
+            pitch: number;
+            /**
+             * Axis
+             * @description x, y or z
+             */
+            axis: string;
+        };
+        /**
          * LastStop
          * @description The last stop of a machine.
          */
@@ -952,6 +1199,29 @@ export interface components {
             /**
              * Pitch
              * @description rad, at joint angle 0
+             */
+            pitch: number;
+        };
+        /**
+         * LinkBox
+         * @description What a link's body lies in, in the frame of the link turned about y by `pitch`.
+         */
+        LinkBox: {
+            /**
+             * Min
+             * @description m
+             */
+            min: number[];
+            /**
+             * Max
+             * @description m
+             */
+            max: number[];
+            /** Link */
+            link: string;
+            /**
+             * Pitch
+             * @description rad
              */
             pitch: number;
         };
@@ -1164,6 +1434,12 @@ export interface components {
              * @default 0
              */
             memory: number;
+            /**
+             * On Demand
+             * @description it runs only while it is needed: stopped is no fault
+             * @default false
+             */
+            on_demand: boolean;
             detail?: components["schemas"]["ReasonView"] | null;
         };
         /**
@@ -1712,6 +1988,17 @@ export interface components {
              * @description from the turning body to the tool, empty if it has no arm
              */
             arm: components["schemas"]["Link"][];
+            /**
+             * Joints
+             * @description parents before children; the first parent is base_link
+             */
+            joints: components["schemas"]["JointOrigin"][];
+            /** Bodies */
+            bodies: components["schemas"]["LinkBox"][];
+            bucket: components["schemas"]["BucketShape"] | null;
+            vessel: components["schemas"]["VesselShape"] | null;
+            blade: components["schemas"]["BladeShape"] | null;
+            tracks: components["schemas"]["TracksShape"] | null;
         };
         /**
          * Spot
@@ -1906,6 +2193,32 @@ export interface components {
             ja: string;
         };
         /**
+         * TracksShape
+         * @description Where two tracks touch the ground, in base_link.
+         */
+        TracksShape: {
+            /**
+             * Rear
+             * @description m, x
+             */
+            rear: number;
+            /**
+             * Front
+             * @description m, x
+             */
+            front: number;
+            /**
+             * Gauge
+             * @description m from middle to middle
+             */
+            gauge: number;
+            /**
+             * Width
+             * @description m, of one
+             */
+            width: number;
+        };
+        /**
          * Tree
          * @description The shape of a run's tree: one entry a node in each list, in the order of `nodes` of a state.
          */
@@ -1935,6 +2248,24 @@ export interface components {
              * @default []
              */
             templates: string[];
+        };
+        /**
+         * VesselShape
+         * @description The inside of a carrier's vessel, on its link.
+         */
+        VesselShape: {
+            /**
+             * Min
+             * @description m
+             */
+            min: number[];
+            /**
+             * Max
+             * @description m
+             */
+            max: number[];
+            /** Link */
+            link: string;
         };
         /**
          * Watched
@@ -2031,7 +2362,7 @@ export interface operations {
             };
         };
     };
-    site_info_api_site_get: {
+    site_bodies_api_site_get: {
         parameters: {
             query?: never;
             header?: never;
@@ -3939,6 +4270,65 @@ export interface operations {
             };
         };
     };
+    ground_api_ground_get: {
+        parameters: {
+            query?: {
+                /** @description about how many at most */
+                cells?: number;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Ground"];
+                };
+            };
+            /** @description the request cannot be read */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description log in first */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description a value is wrong */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description a module of the site is away or does not answer */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+        };
+    };
     scene_api_machines__name__scene_get: {
         parameters: {
             query?: never;
@@ -4829,6 +5219,234 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Revoked"];
+                };
+            };
+            /** @description the request cannot be read */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description log in first */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description you may not do this */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description there is no such thing */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description refused; the message says why */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description no length */
+            411: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description too large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description not JSON */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description a value is wrong */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description a module of the site is away or does not answer */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+        };
+    };
+    check_api_areas_check_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["AreasGiven"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["AreasChecked"];
+                };
+            };
+            /** @description the request cannot be read */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description log in first */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description you may not do this */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description there is no such thing */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description refused; the message says why */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description no length */
+            411: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description too large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description not JSON */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description a value is wrong */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description a module of the site is away or does not answer */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+        };
+    };
+    enable_api_areas_enable_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["AreasWanted"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Nothing"];
                 };
             };
             /** @description the request cannot be read */

@@ -13,8 +13,11 @@ import { texts } from "./texts";
 // The board comes with the frame, others when they are opened.
 const REACT: Record<string, ComponentType<{ rest: string }>> = {
   board: Board,
+  data: lazy(() => import("./data/data_page")),
   editor: lazy(() => import("./editor/editor_page")),
   history: lazy(() => import("./history/history_page")),
+  map: lazy(() => import("./map/map_page")),
+  system: lazy(() => import("./system/system_page")),
   tasks: lazy(() => import("./tasks/tasks_page")),
   tree: lazy(() => import("./tree/tree_page")),
 };

@@ -41,7 +41,7 @@ function Line({ id, run, seconds, journal }: Props & { journal: Journal }) {
     const asked = seconds === "" ? Number.NaN : Number(seconds);
     setChosen(Number.isFinite(asked) ? begin + asked * 1000 : null);
   }, [seconds, begin]);
-  useEffect(() => section.current?.scrollIntoView(), []);
+  useEffect(() => void section.current?.scrollIntoView(), []);
   const time = Math.min(chosen ?? endOf(journal), endOf(journal));
   return (
     <section id="past" ref={section}>

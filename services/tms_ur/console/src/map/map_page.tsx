@@ -1,0 +1,37 @@
+// Map: machines, areas, people, paths and records of the site, and the arms from the side.
+
+import { useMemo } from "react";
+import { useTranslation } from "react-i18next";
+import { useLive } from "../live";
+import { get } from "../server";
+import { useList } from "../use_list";
+import { Notes } from "./notes";
+import { SideView } from "./side_view";
+import { SiteMap } from "./site_map";
+
+const readSite = () => get("/api/site");
+
+export default function MapPage({ rest }: { rest: string }) {
+  const { t } = useTranslation();
+  const { state } = useLive();
+  const site = useList(readSite).list;
+  const bodies = useMemo(() => new Map(site?.machines.map((one) => [one.name, one])), [site]);
+  const inSpace = rest === "3d";
+  return (
+    <>
+      <h2>{t("p_map")}</h2>
+      {state && <Notes state={state} />}
+      {state && site && <SiteMap state={state} bodies={bodies} inSpace={inSpace} />}
+      {!inSpace && (
+        <div id="arms" className="cards">
+          {state?.machines.map((machine) => {
+            const body = bodies.get(machine.name);
+            return body && body.arm.length > 1 && machine.joints.length > 0 ? (
+              <SideView key={machine.name} machine={machine} body={body} />
+            ) : null;
+          })}
+        </div>
+      )}
+    </>
+  );
+}

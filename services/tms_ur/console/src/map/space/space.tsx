@@ -1,0 +1,90 @@
+// The site in 3D; loaded when somebody wants to see it.
+
+import { useEffect, useRef, useState } from "react";
+import { useTranslation } from "react-i18next";
+import { get } from "../../server";
+import type { Scene } from "../picture";
+import type { View } from "../view";
+import { Stage } from "./stage";
+
+const EVERY = 10_000; // ms between two looks at the ground
+
+interface Props {
+  scene: Scene;
+  view: View; // of the map: there it begins
+  follow: string;
+  design: boolean;
+}
+
+export default function Space({ scene, view, follow, design }: Props) {
+  const { t } = useTranslation();
+  const canvas = useRef<HTMLCanvasElement>(null);
+  const names = useRef<HTMLDivElement>(null);
+  const first = useRef(view);
+  const [stage, setStage] = useState<Stage | "none" | null>(null);
+  useEffect(() => {
+    const made = begin(canvas.current, names.current, first.current);
+    setStage(made ?? "none");
+    return () => made?.end();
+  }, []);
+  const there = stage === "none" ? null : stage;
+  useEffect(() => there?.tell(scene, follow), [there, scene, follow]);
+  useEffect(() => {
+    const element = canvas.current?.parentElement;
+    if (!there || !element) {
+      return;
+    }
+    const sized = new ResizeObserver(() => there.resize(element.clientWidth, element.clientHeight));
+    sized.observe(element);
+    return () => sized.disconnect();
+  }, [there]);
+  const grounded = useGround(there);
+  useEffect(() => {
+    if (grounded > 0) {
+      there?.showDesign(design);
+    }
+  }, [there, design, grounded]);
+  return (
+    <>
+      <canvas ref={canvas} id="space" role="img" aria-label={t("map_3d_label")} />
+      <div ref={names} className="names" aria-hidden="true" />
+      {stage === "none" && <p className="bad">{t("no_3d")}</p>}
+    </>
+  );
+}
+
+function begin(canvas: HTMLCanvasElement | null, names: HTMLElement | null, view: View): Stage | null {
+  try {
+    return canvas && names && new Stage(canvas, names, view);
+  } catch {
+    return null; // the browser has no WebGL
+  }
+}
+
+/** Gives the stage the ground, again and again; returns how often that was. */
+function useGround(stage: Stage | null): number {
+  const [times, setTimes] = useState(0);
+  useEffect(() => {
+    if (stage === null) {
+      return;
+    }
+    let [timer, left] = [0, false];
+    const look = async () => {
+      const ground = await get("/api/ground").catch(() => null); // it stays as it was; the next look may be luckier
+      if (left) {
+        return;
+      }
+      if (ground !== null) {
+        stage.setGround(ground);
+        setTimes((before) => before + 1);
+      }
+      timer = window.setTimeout(look, EVERY);
+    };
+    look();
+    return () => {
+      left = true;
+      clearTimeout(timer);
+    };
+  }, [stage]);
+  return times;
+}
