@@ -13,7 +13,7 @@ from conftest import Mesh, wait_until
 from tms_ur.api import STATIC
 
 pytestmark = [pytest.mark.system, pytest.mark.browser]
-PAGES = ["board", "tree", *sorted(path.stem for path in (STATIC / "pages").glob("*.js"))]
+PAGES = ["board", "map", "tree", *sorted(path.stem for path in (STATIC / "pages").glob("*.js"))]
 SWINGS = 3  # number of the task of long swings to and fro
 FIRST_PAGE = 150_000  # bytes, compressed
 TARGET = 44  # px
