@@ -148,7 +148,8 @@ conformance: setup ## replay behaviour-tree cases (CASES=path LEVEL=required|str
 drill: setup ## stop six simulated machines in every way; receipts against the truth (QUICK=1, ROUNDS=4, SEED=7, REPORT=file.md, ONLY="kill rc+tms:ts"; SITE=drill-physx: over OperaSim)
 	@$(VENV)/bin/tms --site $(or $(SITE),drill) drill $(if $(QUICK),--quick) $(if $(ROUNDS),--rounds $(ROUNDS)) $(if $(SEED),--seed $(SEED)) $(if $(LEDGER),--ledger $(LEDGER)) $(if $(ONLY),--only "$(ONLY)") $(if $(REPORT),--report $(REPORT))
 
-simulate: setup ## a site in virtual time goes wrong thousands of times; invariants against the true motion (SCHEDULES=15000 SEED=7)
+simulate: setup ## a site in virtual time goes wrong thousands of times; invariants against the true motion; areas, people and places first (SCHEDULES=15000 SEED=7)
+	@$(MAKE) --no-print-directory areas HISTORIES=$$(( $(or $(SCHEDULES),15000) / 100 + 1 ))
 	@where=$$(cd tests && $(abspath $(PY)) -m simulation.compiled $(abspath $(VENV))/simulation $(if $(SCHEDULES),--schedules $(SCHEDULES))) && \
 	  cd "$$where" && PYTHONPATH=$(abspath tests) $(abspath $(PY)) -m simulation.run $(if $(SCHEDULES),--schedules $(SCHEDULES)) $(if $(SEED),--seed $(SEED)) $(if $(LEDGER),--ledger $(abspath $(LEDGER)))
 

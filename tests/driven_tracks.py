@@ -81,9 +81,9 @@ class DrivenTracks:
         self.ground = Ground(bodies)
 
     def run(self, trip: Trip, seconds: float = 600.0, until: Callable[[], bool] = lambda: False) -> None:
-        """Go on until the trip has ended, or this is true, or for this long."""
+        """Go on until the trip has ended, or this is true after one of its steps, or for this long."""
         end = self.now + seconds
-        while trip.verdict is None and self.now < end and not until():
+        while trip.verdict is None and self.now < end and not (self._ticks % self._control == 0 and until()):
             self.tick(trip)
 
     def tick(self, trip: Trip) -> None:

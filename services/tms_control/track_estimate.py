@@ -43,7 +43,7 @@ class Command(NamedTuple):
     @property
     def brakes(self) -> bool:
         """Whether tracks that get it brake."""
-        return max(abs(self.v), abs(self.w)) < BRAKES
+        return abs(self.v) < BRAKES and abs(self.w) < BRAKES
 
 
 ZERO = Command(0.0, 0.0)
@@ -152,26 +152,28 @@ class TrackEstimate:
         return self._commands[number - 1] if number else ZERO
 
     def _moved(self, state: TrackState, begin: float, end: float) -> tuple[TrackState, float]:
-        """The state after a while, and the turn that a gain of 1 would have made [rad]."""
+        """The state after a while, and the turn that a gain of 1 would have made [rad].
+
+        Plain numbers inside: it makes up most of what the control of tracks costs.
+        """
+        (x, y, yaw), v, r, full = state.pose, state.v, state.r, state.full
         full_turn, time = 0.0, begin
         while end - time > 1e-9:
             seconds = min(SUBSTEP, end - time)
-            state = self._substep(state, self._in_effect(time), seconds)
-            full_turn += state.full * seconds
+            lag, new_v, new_r, new_full = self._answer(self._in_effect(time))
+            kept = math.exp(-seconds / lag)
+            v, r, full = new_v + (v - new_v) * kept, new_r + (r - new_r) * kept, new_full + (full - new_full) * kept
+            middle, way = yaw + r * seconds / 2, v * seconds
+            x, y, yaw = x + way * math.cos(middle), y + way * math.sin(middle), yaw + r * seconds
+            full_turn += full * seconds
             time += seconds
-        return state, full_turn
+        return TrackState(Pose(x, y, yaw), v, r, full), full_turn
 
-    def _substep(self, state: TrackState, command: Command, seconds: float) -> TrackState:
+    def _answer(self, command: Command) -> tuple[float, float, float, float]:
+        """Lag [s] of the tracks under a command, and what they come to: speed, yaw rate, yaw rate with a gain of 1."""
         if command.brakes:
-            lag, v, r, full = BRAKE, 0.0, 0.0, 0.0
-        else:
-            lag, v, full = self.lag, command.v + self.trim, command.w
-            r = self.yaw_gain * command.w + self.turn_trim
-        kept = math.exp(-seconds / lag)
-        v, r, full = (new + (old - new) * kept for new, old in ((v, state.v), (r, state.r), (full, state.full)))
-        x, y, yaw = state.pose
-        middle, way = yaw + r * seconds / 2, v * seconds
-        return TrackState(Pose(x + way * math.cos(middle), y + way * math.sin(middle), yaw + r * seconds), v, r, full)
+            return BRAKE, 0.0, 0.0, 0.0
+        return self.lag, command.v + self.trim, self.yaw_gain * command.w + self.turn_trim, command.w
 
 
 def _within(value: float, most: float) -> float:

@@ -112,7 +112,7 @@ class WayCheck:
 
 def blocked(ground: Ground, outline: Outline, coming: Sequence[Piece]) -> Contact | None:
     """What stands where a machine drives next, as it was told; not what is that near already."""
-    if not coming:
+    if not coming or not ground.bodies:
         return None
     gaps = [float(body.gaps(outline, array(coming[0].start))[0]) for body in ground.bodies]
     return WayCheck(ground, outline, np.array([min(TOUCH, gap) - ROUNDING for gap in gaps])).first(coming)

@@ -26,7 +26,7 @@ from tms_runtime import durable
 from tms_runtime.app import App
 
 PERIOD = 0.04  # s between two looks at what has come: the period of most joint states
-WAITING = 10  # joint states of a machine that may wait for a look: on a busy PC one comes late
+WAITING = 250  # joint states of a machine that may wait, 10 s: if one is lost, what its bucket did then is lost
 TELLS = 0.2  # s between two messages of a volume
 SAVES = 60.0  # s between two files of the ground: after a power cut so much is lost at most
 CYCLES = 2.0  # s between two looks for full buckets and finished cycles, with which the ground is saved at once
@@ -65,7 +65,7 @@ class Keeper:
     """Takes what machines tell, tells their loads and cycles, and saves the ground now and then."""
 
     def __init__(self, app: App, watch: GroundWatch, models: dict[str, MachineModel]) -> None:
-        self._log, self._watch = app.log, watch
+        self._log, self._ros, self._watch = app.log, app.ros, watch
         self._machines = list(models)
         self._listener = Listener(app.ros, app.site, models, models, WAITING)
         self.teller = Teller(app, watch, feeling=app.site.file.backend == "sim")
@@ -86,15 +86,15 @@ class Keeper:
 
     def look(self) -> None:
         """Take what has come since the last look."""
+        stamp = self._ros.now()
         self._listener.take()
         for name in self._machines:
-            with self.lock:  # one at a time: who asks for heights comes in between
-                self._take(name)
+            self._take(name)
         now = monotonic()
         if now - self._told >= TELLS:
             self._told = now
             with self.lock:
-                self.teller.tell()
+                self.teller.tell(stamp)
 
     def _take(self, name: str) -> None:
         place, joints = self._listener.places.place(name), self._listener.joints(name)
@@ -105,12 +105,14 @@ class Keeper:
         self._times[name] = now
         told = self._listener.new_joints(name) or [angles]
         for number, one in enumerate(told, 1):  # what has waited was told in between
-            begun = monotonic()
-            self._watch.take(name, before + (now - before) * number / len(told), one, place)
-            UPDATE.observe(monotonic() - begun)
+            with self.lock:  # for one at a time: who asks for heights comes in between
+                begun = monotonic()
+                self._watch.take(name, before + (now - before) * number / len(told), one, place)
+                UPDATE.observe(monotonic() - begun)
             REPORTS.labels(name).inc()
-        counted(self._watch.count(name, unix_time(), angles, place, self._duties.of(name)))
-        self.teller.feel(name)
+        with self.lock:
+            counted(self._watch.count(name, unix_time(), angles, place, self._duties.of(name)))
+            self.teller.feel(name)
 
     def _go_on(self) -> None:
         """Begin with the kept ground; one that cannot be read is put aside."""

@@ -1,5 +1,6 @@
 """Tells other processes of the ground: loads, what machines feel of it, and where it has changed."""
 
+from builtin_interfaces.msg import Time
 from geometry_msgs.msg import Point, Pose, Quaternion
 from prometheus_client import Gauge
 from std_msgs.msg import Float64
@@ -46,9 +47,11 @@ class Teller:
             message = GroundContact(stamp=self._ros.now(), resistance=now[0], stands=_pose(place))
             self._contacts[name].publish(message)
 
-    def tell(self) -> None:
-        """Tell all loads, and some of the changes; the ground must not change meanwhile."""
-        stamp = self._ros.now()
+    def tell(self, stamp: Time) -> None:
+        """Tell all loads, and some of the changes; the ground must not change meanwhile.
+
+        `stamp`: all that machines had told until then is in the ground.
+        """
         for name, load in self._watch.loads().items():
             LOAD.labels(name).set(load.loose)
             self._volumes[name].publish(Float64(data=load.loose))

@@ -1,5 +1,6 @@
 """Process `tms:ts`: runs stored tasks, one after another and several at once."""
 
+from std_msgs.msg import String
 from tms_msg_db.srv import GetTask
 from tms_msg_ts.action import ExecuteTask
 from tms_msg_ts.srv import AnswerQuestion, CancelRun, CheckTask, ResumePlan
@@ -10,6 +11,7 @@ from tms_reason.reason import Reason
 from tms_reason.wire import to_line
 from tms_runtime.app import App
 from tms_ts.active_runs import ActiveRuns
+from tms_ts.bt import palette
 from tms_ts.execution import Execution, Parts
 from tms_ts.gateways import Gateways
 from tms_ts.groot.monitor import Monitors
@@ -31,7 +33,7 @@ MEASURE = 1.0  # s between updates of the metrics of runs
 
 
 def start(app: App) -> None:
-    """Serve /tms/execute_task and the services for runs."""
+    """Serve /tms/execute_task and the services for runs, and tell which nodes trees can have."""
     parts = _parts(app)
     scheduler = Scheduler(parts)
     app.ros.serve(ExecuteTask, "/tms/execute_task", Execution(parts).execute)
@@ -40,6 +42,7 @@ def start(app: App) -> None:
     app.ros.offer_slow(ResumePlan, "/tms/resume_plan", parts.interrupted.plan)
     app.ros.offer_slow(CancelRun, "/tms/abandon_run", parts.interrupted.abandon)
     app.ros.offer(AnswerQuestion, "/tms/answer", scheduler.answer)
+    app.ros.publisher(String, "/tms/palette", depth=1, latched=True).publish(String(data=palette(builtin=True)))
     Permissions(parts.runs, parts.publisher.questions).serve(app)
     app.ros.every(MEASURE, scheduler.measure)
     app.on_stop(scheduler.close)

@@ -18,6 +18,7 @@ from tms_decision.reasons import SoftwareStopBy
 from tms_reason.errors import TmsError
 from tms_reason.reason import Reason
 from tms_ur.access import Person
+from tms_ur.angle_limits import check_angles
 from tms_ur.command_models import (
     AnswerGiven,
     AreasGiven,
@@ -55,7 +56,7 @@ def add(app: FastAPI, client: "SiteClient", audit: "Audit", site: Site) -> None:
     note = _Note(audit)
     _runs(app, client, note)
     _machines(app, client, note, site)
-    _stored(app, client, note)
+    _stored(app, client, note, site)
     _places(app, client, note)
     _areas(app, client, note)
     _processes(app, client, note)
@@ -163,7 +164,7 @@ def _stop_all(client: "SiteClient", machines: list[str], who: str) -> list[Recei
         return list(pool.map(lambda machine: client.stop(machine, cause), machines))
 
 
-def _stored(app: FastAPI, client: "SiteClient", note: _Note) -> None:
+def _stored(app: FastAPI, client: "SiteClient", note: _Note, site: Site) -> None:
     @app.post("/api/tasks", status_code=201, summary="Store a tree as a task", responses=ANSWERS)
     def add_task(request: Request, given: TaskGiven, person: Admin) -> Added:
         number, there = client.add_task(given.xml, given.description)
@@ -184,6 +185,8 @@ def _stored(app: FastAPI, client: "SiteClient", note: _Note) -> None:
     @app.post("/api/parameters", summary="Set fields of a record in one step", responses=ANSWERS)
     def set_parameter(request: Request, given: RecordGiven, person: Admin) -> Nothing:
         values = {field.name: _typed(field) for field in given.fields}
+        if given.model_name in site.file.machines:
+            check_angles(site.model_of(given.model_name), values)
         reported = ", ".join(f"{name}={value}" for name, value in values.items())
         who = note(request, person, "set_parameter", f"{given.model_name}/{given.record_name} {reported}"[:500])
         client.set_parameter(given.model_name, given.record_name, values, who, given.create, given.type)

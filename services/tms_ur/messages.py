@@ -107,7 +107,7 @@ def last_stop(made: rc.StopReceipt) -> LastStop:
     return LastStop(stamp=when(made.stamp), confirmed=made.confirmed)
 
 
-def process(row: host.Process) -> Process:
+def process(row: host.Process, on_demand: bool) -> Process:
     """For the console: a supervised process."""
     return Process(
         name=row.name,
@@ -118,6 +118,7 @@ def process(row: host.Process) -> Process:
         detail=of_line(row.detail),
         cpu=round(row.cpu, 1),
         memory=row.memory,
+        on_demand=on_demand,
     )
 
 

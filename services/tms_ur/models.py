@@ -110,6 +110,7 @@ class Process(Model):
     uptime: float = Field(default=0.0, description="s")
     cpu: float = Field(default=0.0, description="% of one core, over the last seconds")
     memory: int = Field(default=0, description="bytes in RAM")
+    on_demand: bool = Field(default=False, description="it runs only while it is needed: stopped is no fault")
     detail: ReasonView | None = None
 
 

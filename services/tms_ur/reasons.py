@@ -40,6 +40,7 @@ class InternalError(Reason, text="{error} in the console: this is a bug", action
 
 # values of records
 class BadValue(Reason, text="{field}: {value}: {why}"): field: str; value: str; why: Reason
+class AngleUnfit(Reason, text="{joint}: {why}"): joint: str; why: Reason
 class NotOfType(Reason, text="this is no {type}"): type: str
 class IntTooLong(Reason, text="an int has 64 bits"): pass
 class NotFinite(Reason, text="a double is finite"): pass

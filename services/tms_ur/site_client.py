@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from std_msgs.msg import String
 from tms_msg_db.srv import (
     AddTask,
     AddTemplate,
@@ -27,6 +28,7 @@ from tms_msg_ts.srv import CheckTask
 
 from tms_config.clock import monotonic
 from tms_config.config import Site
+from tms_config.processes import table
 from tms_decision.gateway.stops import RECEIPT_LIMIT
 from tms_machine.places import PERIOD, Places
 from tms_machine.values import to_parameters
@@ -60,7 +62,9 @@ class SiteClient(RunCalls):
         super().__init__(ros)
         self._machines = names = list(site.file.machines)
         self.board = Board(names)
+        self._on_demand = {row.full for row in table(site) if not row.autostart}
         self.watching, self.shared = Watching(ros, site, self.board), PlaceClient(ros, self.board)
+        self.palette = ""  # the nodes of trees, as XML; empty until the scheduler has told them
         self._inputs: tuple[list[InputState], float] | None = None  # read and replaced in one step
         self._places = Places(ros, {name: site.border(name) for name in names})
         for name in names:
@@ -68,6 +72,7 @@ class SiteClient(RunCalls):
             ros.subscribe(StopReceipt, f"/{name}/rc/receipts", self._on_receipt, depth=20, latched=True)
             ros.prepare(StopMachine, f"/{name}/rc/stop")
         ros.subscribe(RunStates, "/tms/runs", self._on_runs, latched=True)
+        ros.subscribe(String, "/tms/palette", self._on_palette, latched=True)
         ros.subscribe(Processes, "/tms/host/processes", self._on_processes, depth=10, latched=True)
         ros.subscribe(InputStates, "/tms/sp/inputs", self._on_inputs, latched=True)
         ros.poll_in_thread(PERIOD, self._update_places, "places")
@@ -84,8 +89,12 @@ class SiteClient(RunCalls):
         runs = [messages.active_run(run) for run in message.runs]
         self.board.put_runs(runs, [messages.question(asked) for asked in message.questions])
 
+    def _on_palette(self, message: String) -> None:
+        self.palette = message.data
+
     def _on_processes(self, message: Processes) -> None:
-        self.board.put_host(Host(name=message.host, processes=[messages.process(row) for row in message.processes]))
+        rows = [messages.process(row, row.name in self._on_demand) for row in message.processes]
+        self.board.put_host(Host(name=message.host, processes=rows))
 
     def _on_inputs(self, message: InputStates) -> None:
         self._inputs = (list(message.inputs), monotonic())

@@ -2,8 +2,11 @@
 
 import math
 import os
+import random
 import sys
+from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
+from typing import TypeVar
 
 import click
 
@@ -11,9 +14,8 @@ from areas import people
 from areas.history import Result, run
 from areas.shared import run as sharing
 
-NEEDLESS = (
-    2.0  # percent at most of planned drives that end with a stop that nothing asked for; whims of wild drivers are none
-)
+NEEDLESS = 2.0  # percent at most of planned drives that end with a stop that nothing asked for; wild ones plan nothing
+T = TypeVar("T")
 WALKS = 10  # histories of machines for each history of people, which takes ten times as long
 
 
@@ -25,9 +27,15 @@ def judged(seed: int) -> Result:
     return found
 
 
+def each(pool: ProcessPoolExecutor, run: Callable[[int], T], seeds: range, what: str) -> list[T]:
+    """What the histories of some seeds have shown; how far they are is told."""
+    with click.progressbar(pool.map(run, seeds, chunksize=5), len(seeds), what, file=sys.stderr) as done:
+        return list(done)
+
+
 def shared(histories: int, seed: int, pool: ProcessPoolExecutor) -> bool:
     """Histories of machines that share places, a tenth as many; whether all is well."""
-    done = list(pool.map(sharing, range(seed, seed + max(1, histories // 10)), chunksize=5))
+    done = each(pool, sharing, range(seed, seed + max(1, histories // 10)), "shared places")
     wrong = [one for one in done if one.two_inside or one.unseen or one.starved]
     for one in wrong[:10]:
         click.echo(f"seed {one.seed}: {one}")
@@ -38,14 +46,17 @@ def shared(histories: int, seed: int, pool: ProcessPoolExecutor) -> bool:
 
 @click.command()
 @click.option("--histories", "-n", default=10_000, show_default=True)
-@click.option("--seed", "-s", default=0, show_default=True)
-@click.option("--workers", default=os.cpu_count() or 1)
-def main(histories: int, seed: int, workers: int) -> None:
+@click.option("--seed", "-s", default=None, type=int, help="First seed; a random one if it is not given.")
+@click.option("--workers", default=os.cpu_count() or 1, show_default=True, help="Processes side by side.")
+def main(histories: int, seed: int | None, workers: int) -> None:
     """Drive machines between areas in virtual time."""
+    if seed is None:
+        seed = random.SystemRandom().randrange(1_000_000_000)
+    click.echo(f"areas: seeds from {seed} on")
     with ProcessPoolExecutor(workers) as pool:
         fine = shared(histories, seed, pool)
-        done = list(pool.map(judged, range(seed, seed + histories), chunksize=20))
-        walks = list(pool.map(people.run, range(seed, seed + max(1, histories // WALKS)), chunksize=5))
+        done = each(pool, judged, range(seed, seed + histories), "areas")
+        walks = each(pool, people.run, range(seed, seed + max(1, histories // WALKS)), "people")
     late = [one for one in walks if one.moved]
     for walk in late[:10]:
         click.echo(f"seed {walk.seed}: a machine moved among people at {walk.moved}")

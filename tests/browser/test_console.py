@@ -13,7 +13,7 @@ from conftest import Mesh, wait_until
 from tms_ur.api import STATIC
 
 pytestmark = [pytest.mark.system, pytest.mark.browser]
-PAGES = ["board", "map", "tree", *sorted(path.stem for path in (STATIC / "pages").glob("*.js"))]
+PAGES = sorted(set(re.findall(r'"p_(\w+)"', (STATIC / "words.js").read_text(encoding="utf-8"))))
 SWINGS = 3  # number of the task of long swings to and fro
 FIRST_PAGE = 150_000  # bytes, compressed
 TARGET = 44  # px
@@ -443,7 +443,7 @@ def test_processes_logs_and_restart(page: Page, address: str, mesh: Mesh) -> Non
     page.get_by_role("button", name="Restart zx200:rp", exact=True).click()
     page.locator("#dialog_yes").click()
     expect(page.locator("#message")).to_have_text("zx200:rp was restarted.")
-    expect(page.locator("#list_processes tr", has_text="zx200:rp")).to_contain_text("Running")
+    expect(page.locator("[data-process='zx200:rp']")).to_contain_text("Running")
     mesh.wait_ready()
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import Page, expect
 
 from tms_config.clock import utc_now
@@ -14,6 +15,7 @@ from tms_decision.reasons import SoftwareStop
 from tms_reason.errors import TmsError
 from tms_reason.reason import Reason
 from tms_reason.remedies import REARM, RESUME
+from tms_ts.bt import check, palette
 from tms_ur.models import Event, Host, Place, Process, Question
 from tms_ur.reason_view import view
 from unit.tms_ur.fakes import NOON
@@ -203,6 +205,27 @@ def test_the_processes_of_a_silent_pc_are_unknown(page: Page, address: str, yard
     expect(row).to_contain_text("Unknown---")
 
 
+def test_a_stopped_process_is_a_fault_only_where_it_should_run(page: Page, address: str, yard: Yard) -> None:
+    """And the alarm leads to its log."""
+    rows = [Process(name="zx200:st_swing", state="STOPPED", on_demand=True), Process(name="tms:db", state="STOPPED")]
+    yard.board.put_host(Host(name="pc", processes=rows))
+    page.goto(f"{address}/#system")
+    expect(page.locator("#list_processes tr")).to_contain_text(["tms:dbpc! Down", "zx200:st_swingpc■ On demand"])
+    expect(page.locator("#list_alarms li")).to_have_text(["▲ Process tms:db does not run.Log"])
+    page.get_by_role("link", name="Log").click()
+    expect(page.locator("#log_text")).to_have_text("event=started")
+    expect(page.locator("#log_text")).to_be_in_viewport()
+    page.locator("#log_filter").fill("ended")
+    expect(page.locator("#log_text")).to_be_empty()
+
+
+def test_the_history_of_a_record_is_a_plot(page: Page, address: str, yard: Yard) -> None:
+    page.goto(f"{address}/#data")
+    page.get_by_role("button", name="History of zx200/pose").click()
+    expect(page.locator("#values canvas")).to_be_visible()
+    expect(page.locator("#list_values")).to_contain_text("d: 1")
+
+
 def test_ages_are_told_by_the_clock_of_the_site(page: Page, address: str, yard: Yard) -> None:
     until = utc_now() + timedelta(seconds=300)
     asked = Question(id="q", run_id="r-1", node="0", title="Safety", text="Clear?", until=until)
@@ -259,14 +282,32 @@ def test_nodes_of_a_template_are_marked_in_the_history(page: Page, address: str,
     """Whose journal names the template, too."""
     journal_of_template(yard)
     page.goto(f"{address}/#history/r-1")
-    marked = page.locator("#past [data-path]").filter(has=page.locator("rect.template"))
+    marked = page.locator("#past [data-path]").filter(has=page.locator(".from_template"))
     expect(page.locator("#past [data-path]")).to_have_count(3)
-    expect(marked).to_have_count(1)
     expect(marked).to_have_attribute("data-path", "0.1")
-    expect(marked.locator("title")).to_contain_text("(template Dig:3)")
+    expect(marked).to_have_attribute("title", re.compile(r"\(template Dig:3\)"))
     expect(page.locator("#list_events tr").first.locator("[data-part=node]")).to_have_text("0.1 (template Dig:3)")
     page.locator("#language").click()
-    expect(marked.locator("title")).to_contain_text("(テンプレート Dig:3)")
+    expect(marked).to_have_attribute("title", re.compile(r"\(テンプレート Dig:3\)"))
+
+
+def test_the_cursor_of_a_run_goes_by_time(page: Page, address: str, yard: Yard) -> None:
+    """The address of a moment opens it; what is clicked on in the journal is gone to."""
+    change = {"kind": "node", "node": "0.1"}
+    later = [NOON + timedelta(seconds=seconds) for seconds in (0, 10, 30)]
+    yard.journals = {"r-1": [
+        event(1, "tree", **WITH_TEMPLATE),
+        Event(number=2, stamp=later[1], text="called IDLE -> RUNNING", **change),
+        Event(number=3, stamp=later[2], text="called RUNNING -> SUCCESS", **change),
+    ]}  # fmt: skip
+    page.goto(f"{address}/#history/r-1/12.5")
+    node = page.locator("#past [data-path='0.1']")
+    expect(node).to_have_attribute("data-state", "running")
+    page.locator("#slider").fill("300")  # tenths of a second
+    expect(node).to_have_attribute("data-state", "success")
+    page.locator("#list_events tr", has_text="IDLE -> RUNNING").get_by_role("button").click()
+    expect(node).to_have_attribute("data-state", "running")
+    expect(page.get_by_role("link", name="Link to this moment")).to_have_attribute("href", "#history/r-1/10.0")
 
 
 def test_a_file_is_stored_as_a_template_under_its_name(page: Page, address: str, yard: Yard) -> None:
@@ -280,3 +321,50 @@ def test_a_file_is_stored_as_a_template_under_its_name(page: Page, address: str,
     page.locator("#dialog_yes").click()
     expect(page.locator("#message")).to_have_text("Stored as template Dig.")
     assert [call for call in yard.calls if call[0] == "add_template"] == [("add_template", "Dig", text, "", True)]
+
+
+def structural(xml: str) -> tuple[list[Reason], list[Reason]]:
+    """The check of a tree as far as the tree alone tells."""
+    return [error.reason for error in check(xml).errors], []
+
+
+DRAWN = """        <Sequence>
+            <Action ID="LeafNodeZx200" model_name="zx200" subtask_name="subtask_zx200_change_pose" record_name="pose"/>
+            <Action ID="WaitForClick"/>
+            <Action ID="LeafNodeZx200" model_name="zx200" subtask_name="subtask_zx200_change_pose" record_name="pose"/>
+        </Sequence>
+"""
+
+
+def test_a_task_is_drawn_checked_and_saved(
+    page: Page, address: str, yard: Yard, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """By what is written on the page alone: three leaves, one of them by drag and one by copy and keys."""
+    monkeypatch.setattr(yard, "check_task", structural)
+    yard.palette = palette(builtin=True)
+    page.goto(f"{address}/#tasks")
+    page.get_by_role("link", name="Draw a task").click()
+    findings = page.get_by_role("region", name="Check")
+    expect(findings).to_contain_text("Errors (1)")  # the Sequence is empty
+    nodes = page.locator("[data-path]")
+    expect(nodes).to_have_text(["Sequence ✖1"])
+    page.get_by_text("zx200", exact=True).click()
+    page.get_by_role("button", name="subtask_zx200_change_pose", exact=True).click()
+    page.get_by_label("record_name").fill("pose")
+    page.get_by_label("Filter").fill("click")
+    page.get_by_role("button", name="WaitForClick").drag_to(nodes.first)
+    drawing = page.get_by_role("application", name="Drawing of the tree")
+    drawing.focus()
+    for key in ("ArrowLeft", "Control+c", "ArrowRight", "Control+v", "Control+v", "Control+z"):
+        page.keyboard.press(key)
+    expect(nodes).to_have_count(4)
+    expect(findings).to_have_text("Check: nothing to complain of.")
+    assert Axe().run(page).response["violations"] == []
+    page.get_by_label("Name of the task").fill("dig")
+    page.get_by_label("Comment on this version").fill("first")
+    page.get_by_role("button", name="Save", exact=True).click()
+    expect(page.locator("#message")).to_have_text("Stored as task 5.")
+    [(_, stored, description)] = [call for call in yard.calls if call[0] == "add_task"]
+    assert description == "dig | first"
+    assert DRAWN in str(stored)
+    assert check(str(stored)).errors == []

@@ -19,7 +19,7 @@ from tms_ur.access import Access
 from tms_ur.api import create_app
 from tms_ur.board import Board
 from tms_ur.connections import Listener
-from tms_ur.data_models import Record
+from tms_ur.data_models import Change, Record
 from tms_ur.models import ActiveRun, AddedTemplate, Event, Machine, Rearmed, Run
 from tms_ur.node import Server
 from unit.tms_ur.fakes import NOON, FakeAudit, FakeSiteClient
@@ -69,6 +69,9 @@ class Yard(FakeSiteClient):
         written = utc_now() - timedelta(seconds=30)
         facts = {"type": "static", "description": "", "source": "cli", "updated_at": written, "values": {"d": 1.0}}
         return [Record(model_name="zx200", record_name="pose", **facts)]
+
+    def parameter_history(self, model_name: str, record_name: str, limit: int) -> list[Change]:
+        return [Change(stamp=NOON, source="cli", values={"d": 1.0})]
 
 
 @contextmanager

@@ -41,16 +41,20 @@ class Drawn:
     versions: tuple[int, ...]  # of the C++ system that have it
 
 
-def palette(registry: Registry | None = None) -> str:
-    """A document with a TreeNodesModel and nothing else; built-in nodes are left out, Groot knows them.
+def palette(registry: Registry | None = None, *, builtin: bool = False) -> str:
+    """A document with a TreeNodesModel and nothing else.
 
-    The call of a template, which is no node of a tree that runs, is drawn like one.
+    Built-in nodes, which Groot knows, are left out, or marked with an attribute of their own. The call of a template,
+    which is no node of a tree that runs, is drawn like one.
     """
     root = etree.Element("root")
     model = etree.SubElement(root, "TreeNodesModel")
-    nodes = {name: _drawn(cls) for name, cls in (registry or all_nodes()).items() if not cls.builtin}
+    known = registry or all_nodes()
+    nodes = {name: _drawn(cls) for name, cls in known.items() if builtin or not cls.builtin}
     for name, drawn in sorted({**nodes, CALL: Drawn("ACTION", CALL_TEXT, CALL_PORTS, (6,))}.items()):
-        _entry(model, name, drawn)
+        entry = _entry(model, name, drawn)
+        if name in known and known[name].builtin:
+            entry.set("builtin", "true")
     etree.indent(root, "    ")
     return etree.tostring(root, encoding="unicode") + "\n"
 
@@ -65,12 +69,13 @@ def summary(cls: type[Node]) -> str:
     return " ".join((cls.__doc__ or "").strip().split("\n\n")[0].split())
 
 
-def _entry(model: etree._Element, name: str, drawn: Drawn) -> None:
+def _entry(model: etree._Element, name: str, drawn: Drawn) -> etree._Element:
     mark = MARKS.get(drawn.versions, "")
     model.append(etree.Comment(f" {name}{mark}: {drawn.text} ".replace("--", "-")))
     entry = etree.SubElement(model, drawn.kind.capitalize(), {"ID": name})
     for port in drawn.ports:
         _port(entry, port, mark if len(drawn.versions) == 1 else "")
+    return entry
 
 
 def _port(entry: etree._Element, port: Port, mark: str) -> None:

@@ -24,5 +24,6 @@ export default defineConfig(({ command }) => ({
     modulePreload: { polyfill: false },
     chunkSizeWarningLimit: 600, // kB: three, which only the picture in 3D loads
   },
+  server: { fs: { allow: ["../../.."] } }, // tests read tasks of the field
   test: { environment: "jsdom", cache: false, fsModuleCache: false, testTimeout: 120_000 }, // nothing is written beside the sources,
 }));

@@ -1,11 +1,11 @@
 // Building blocks of all pages.
 import { t } from "./strings.js";
 
-const MARKS = { moving: "▶", running: "▶", RUNNING: "▶", standing: "■", success: "✔", STOPPED: "■", stopping: "…",
+const MARKS = { moving: "▶", running: "▶", RUNNING: "▶", standing: "■", success: "✔", STOPPED: "■", on_demand: "■", stopping: "…",
   preparing: "…", STARTING: "…", STOPPING: "…", armed: "✔", held: "…",
   alive: "✔", waiting: "…", place_free: "✔", place_granted: "…", place_held: "■", place_leaving: "…" };
 const GOOD = new Set(["moving", "standing", "running", "success", "RUNNING", "armed", "alive", "place_held"]);
-const CALM = new Set(["STOPPED", "EXITED", "place_free", "place_granted", "place_leaving", "cancelled", "preparing", "stopping", "STARTING", "STOPPING", "held", "by_hand", "waiting"]);
+const CALM = new Set(["STOPPED", "on_demand", "EXITED", "place_free", "place_granted", "place_leaving", "cancelled", "preparing", "stopping", "STARTING", "STOPPING", "held", "by_hand", "waiting"]);
 const SVG = "http://www.w3.org/2000/svg";
 
 export const at = (id) => document.getElementById(id);

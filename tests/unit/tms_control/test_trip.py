@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from driven_tracks import GAINS, MODELS, DrivenTracks
+from driven_tracks import GAINS, MODELS, TICK, DrivenTracks
 from tms_control.ground import Body
 from tms_control.path import Path, Piece, Pose
 from tms_control.planner import Goal
@@ -279,12 +279,13 @@ def test_a_cancel_ramps_down(model: str) -> None:
     machine.run(trip, until=lambda: machine.pose.x > 5)
     assert machine.speed > 0.9
     trip.cancel()
-    speeds: list[float] = []
-    machine.run(trip, 10.0, until=lambda: bool(speeds.append(machine.speed)))
+    speeds: list[float] = []  # at each tick
+    while trip.verdict is None and len(speeds) * TICK < 5.0:
+        speeds.append(machine.speed)
+        machine.tick(trip)
     assert trip.verdict == CANCELED and machine.speed == 0.0 and machine.sent[-1] == ZERO
     steps = [a - b for a, b in pairwise(speeds) if a > 0.15]
     assert max(steps) < 2.5 * machine.drive.acceleration * 0.02, "it has braked hard"
-    assert len(speeds) * 0.01 < 5.0
 
 
 def again(trip: Trip) -> bool:

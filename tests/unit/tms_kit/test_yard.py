@@ -11,6 +11,7 @@ from tms_msg_ground.srv import GetHeights
 from tms_config.config import load_site
 from tms_kit import yard
 from tms_kit.yard import Yard
+from tms_machine.stamps import time
 from tms_reason.errors import SubtaskFailed
 from tms_soil import patches
 from tms_soil.surface import Heights
@@ -22,6 +23,7 @@ services: {db: {}}
 machines: {zx200: {model: zx200}, ic120: {model: ic120}, d37pxi: {model: d37pxi}}
 ground: {area: [-10, -10, 10, 10]}
 """
+NOW = 1.8e9  # s since 1970
 LEVEL = Heights(0.0, 0.0, 0.2, np.zeros((2, 3)))
 
 
@@ -40,6 +42,7 @@ def world(tmp_path: Any, monkeypatch: pytest.MonkeyPatch) -> Any:
         world.checks += 1
 
     monkeypatch.setattr(yard, "monotonic", lambda: world.now)
+    monkeypatch.setattr(yard, "unix_time", lambda: NOW)
     monkeypatch.setattr(yard, "sleep", let_time_pass)
     monkeypatch.setattr(yard, "Places", lambda *_: SimpleNamespace(take=lambda: None, place=lambda _: None))
     ros: Any = SimpleNamespace(
@@ -51,14 +54,20 @@ def world(tmp_path: Any, monkeypatch: pytest.MonkeyPatch) -> Any:
     return world
 
 
-def loads(*volumes: float) -> list[SoilLoad]:
-    return [SoilLoad(loose=loose) for loose in volumes]
+def loads(*volumes: float, late: float = 0.0) -> list[SoilLoad]:
+    return [SoilLoad(loose=loose, stamp=time(NOW - late)) for loose in volumes]
 
 
 def test_only_a_load_that_is_told_after_the_call_counts(world: Any) -> None:
     world.told |= {"/zx200/soil_load": loads(0.1, 0.7), "/ic120/soil_load": loads(1.0, 2.0)}
     found = world.yard.loads(["zx200", "ic120"], world.check)
     assert [one.loose for one in found] == [0.7, 2.0]
+
+
+def test_what_a_late_ground_tells_after_the_call_does_not_count(world: Any) -> None:
+    world.told |= {"/zx200/soil_load": [*loads(0.1), *loads(0.2, 0.3, late=0.5), *loads(0.7)]}
+    (found,) = world.yard.loads(["zx200"], world.check)
+    assert found.loose == 0.7, "it has taken what the machine did before the call"
 
 
 def test_a_load_that_nobody_tells_fails_it_in_the_end(world: Any) -> None:

@@ -72,6 +72,7 @@ class FakeSiteClient:
     def __init__(self) -> None:
         self.board = Board(["zx200"])
         self.watching = FakeWatching()
+        self.palette = ""
         self.error: TmsError | None = None
         self.calls: list[tuple[object, ...]] = []
         self.shared = FakePlaces(self)

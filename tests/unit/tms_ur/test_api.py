@@ -189,6 +189,14 @@ def test_values_that_do_not_fit_their_type(
     assert site_client.calls == []
 
 
+def test_an_angle_that_the_joint_cannot_have_is_refused(client: Client, site_client: FakeSiteClient) -> None:
+    record = lambda angle: {**RECORD, "fields": [{"name": "boom_joint", "type": "double", "value": angle}]}  # noqa: E731
+    answer = client.post("/api/parameters", json=record(0.5))
+    assert (answer.status_code, answer.json()["code"]) == (409, "ANGLE_UNFIT")
+    assert "boom_joint" in answer.json()["text"]["en"] and site_client.calls == []
+    assert client.post("/api/parameters", json=record(-0.5)).status_code == 200
+
+
 HUGE = str(10**400)
 
 

@@ -400,6 +400,40 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/palette": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** What a task can be made of: nodes, machines, their subtasks */
+        get: operations["palette_api_palette_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/templates/{name}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** The tree of a template */
+        get: operations["template_api_templates__name__get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/runs/{run_id}/cancel": {
         parameters: {
             query?: never;
@@ -1305,6 +1339,22 @@ export interface components {
          */
         Nothing: Record<string, never>;
         /**
+         * Palette
+         * @description What a task can be made of.
+         */
+        Palette: {
+            /**
+             * Xml
+             * @description a TreeNodesModel with every node of trees, empty until the scheduler has told; builtin marks those that Groot knows without it
+             */
+            xml: string;
+            /**
+             * Machines
+             * @description of the site
+             */
+            machines: components["schemas"]["Worker"][];
+        };
+        /**
          * Place
          * @description Where a machine stands, frame `map`.
          */
@@ -1384,6 +1434,12 @@ export interface components {
              * @default 0
              */
             memory: number;
+            /**
+             * On Demand
+             * @description it runs only while it is needed: stopped is no fault
+             * @default false
+             */
+            on_demand: boolean;
             detail?: components["schemas"]["ReasonView"] | null;
         };
         /**
@@ -2116,6 +2172,17 @@ export interface components {
             replace: boolean;
         };
         /**
+         * TemplateText
+         * @description The tree of a template.
+         */
+        TemplateText: {
+            /**
+             * Xml
+             * @description the tree as Groot draws it
+             */
+            xml: string;
+        };
+        /**
          * Texts
          * @description The same in both languages.
          */
@@ -2215,6 +2282,21 @@ export interface components {
             hardware: {
                 [key: string]: string;
             };
+        };
+        /**
+         * Worker
+         * @description A machine that leaves can ask.
+         */
+        Worker: {
+            /** Name */
+            name: string;
+            /** Model */
+            model: string;
+            /**
+             * Subtasks
+             * @description the names that leaves give
+             */
+            subtasks: string[];
         };
         /**
          * Xml
@@ -4296,6 +4378,120 @@ export interface operations {
             };
             /** @description refused; the message says why */
             409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description a value is wrong */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description a module of the site is away or does not answer */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+        };
+    };
+    palette_api_palette_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Palette"];
+                };
+            };
+            /** @description the request cannot be read */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description log in first */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description a value is wrong */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+        };
+    };
+    template_api_templates__name__get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                name: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["TemplateText"];
+                };
+            };
+            /** @description the request cannot be read */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description log in first */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description there is no such thing */
+            404: {
                 headers: {
                     [name: string]: unknown;
                 };

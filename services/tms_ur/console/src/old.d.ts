@@ -43,4 +43,5 @@ declare module "old/actions.js" {
   export const LINKS: Record<string, string>;
   export function rearmMachine(name: string): Promise<string>;
   export function cancelRun(id: string): Promise<string>;
+  export function restartProcess(name: string, running: number): Promise<string>;
 }

@@ -13,7 +13,12 @@ import { texts } from "./texts";
 // The board comes with the frame, others when they are opened.
 const REACT: Record<string, ComponentType<{ rest: string }>> = {
   board: Board,
+  data: lazy(() => import("./data/data_page")),
+  editor: lazy(() => import("./editor/editor_page")),
+  history: lazy(() => import("./history/history_page")),
   map: lazy(() => import("./map/map_page")),
+  system: lazy(() => import("./system/system_page")),
+  tasks: lazy(() => import("./tasks/tasks_page")),
   tree: lazy(() => import("./tree/tree_page")),
 };
 
@@ -27,7 +32,7 @@ export function Pages() {
   const { t } = useTranslation();
   const address = useSyncExternalStore(onHash, hash);
   const [asked = "", ...rest] = address.split("/");
-  const name = PAGE_NAMES.includes(asked) ? asked : "board";
+  const name = PAGE_NAMES.includes(asked) || asked in REACT ? asked : "board"; // the editor has no link of its own
   const New = REACT[name];
   // biome-ignore lint/correctness/useExhaustiveDependencies: the message belongs to the page that is left
   useEffect(() => () => say(""), [name]);

@@ -1,6 +1,6 @@
 import { describe, expect, test } from "vitest";
 import type { ActiveRun, Machine, ReasonView, State } from "../models";
-import { alarmsOf } from "./alarms";
+import { alarmsOf, type Process } from "./alarms";
 import { doingOf } from "./doing";
 import { lightOf } from "./light";
 
@@ -43,13 +43,15 @@ describe("the light of the site", () => {
 });
 
 test("alarms tell of what is away, and of a silent PC only that", () => {
-  const process = (state: string) => ({ name: `p:${state}`, state }) as State["hosts"][0]["processes"][0];
+  const process = (state: string, on_demand = false) => ({ name: `p:${state}`, state, on_demand }) as Process;
+  const idle = { ...process("STOPPED", true), name: "idle" };
+  const lost = { ...process("FATAL", true), name: "lost" };
   const hosts = [
-    { name: "near", age: 1, processes: [process("RUNNING"), process("STOPPED"), process("FATAL")] },
+    { name: "near", age: 1, processes: [process("RUNNING"), idle, lost, process("STOPPED"), process("FATAL")] },
     { name: "far", age: 7, processes: [process("FATAL")] },
   ];
   const found = alarmsOf(site([], { hosts, scheduler: { alive: false, age: null } }));
-  expect(found.map((alarm) => alarm.key)).toEqual(["scheduler", "p:FATAL", "far"]);
+  expect(found.map((alarm) => alarm.key)).toEqual(["scheduler", "lost", "p:STOPPED", "p:FATAL", "far"]);
   expect(alarmsOf(site([]))).toEqual([]);
 });
 

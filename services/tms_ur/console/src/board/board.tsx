@@ -6,7 +6,8 @@ import type { ActiveRun, State } from "../models";
 import { get } from "../server";
 import { useList } from "../use_list";
 import { ActiveRuns } from "./active_runs";
-import { type Alarm, alarmsOf } from "./alarms";
+import { AlarmList } from "./alarm_list";
+import { alarmsOf } from "./alarms";
 import { Interrupted } from "./interrupted";
 import { lightOf, markOf } from "./light";
 import { MachineCard } from "./machine_card";
@@ -28,7 +29,7 @@ export function Board() {
   return (
     <div className="board">
       <SiteLight state={state} link={link} needed={alarms.length + runs.length + state.shared.alarms.length} />
-      <Alarms alarms={alarms} />
+      <AlarmList alarms={alarms} />
       <Interrupted runs={runs} changed={interrupted.again} />
       <div className="halves">
         <div>
@@ -52,22 +53,6 @@ function SiteLight({ state, link, needed }: { state: State; link: boolean | null
       <span aria-hidden="true">{markOf(light)}</span> <strong>{t(`light_${light}`)}</strong>{" "}
       <span>{machines.join(", ")}</span>
     </p>
-  );
-}
-
-function Alarms({ alarms }: { alarms: Alarm[] }) {
-  const { t } = useTranslation();
-  return (
-    <ul id="list_alarms" className="rows" aria-label={t("alarms")} hidden={alarms.length === 0}>
-      {alarms.map((alarm) => (
-        <li key={alarm.key} className="bad">
-          <span>▲ {t(alarm.text, alarm.values)}</span>
-          <a className="button" href="#system">
-            {t("p_system")}
-          </a>
-        </li>
-      ))}
-    </ul>
   );
 }
 

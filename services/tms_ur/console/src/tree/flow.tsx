@@ -1,30 +1,17 @@
 // The drawing of a tree: it follows the running leaf, finished branches fold, and what is clicked on opens and tells more.
 import "@xyflow/react/dist/base.css";
 import "./tree.css";
-import {
-  type Edge,
-  MiniMap,
-  type NodeHandle,
-  Position,
-  ReactFlow,
-  ReactFlowProvider,
-  useReactFlow,
-} from "@xyflow/react";
-import { useEffect, useMemo, useRef, useState } from "react";
+import { MiniMap, ReactFlow, ReactFlowProvider, useReactFlow } from "@xyflow/react";
+import { useEffect, useMemo, useState } from "react";
 import { useTranslation } from "react-i18next";
 import type { Tree } from "../models";
+import { BOX, linesTo } from "./boxes";
 import { Details } from "./details";
-import { HEIGHT, type Placed, placed, WIDTH } from "./layout";
+import { type Placed, placed, WIDTH } from "./layout";
 import { type BoxNode, NodeBox, WORDS } from "./node_box";
-import { type NodeState, nodesOf, openPaths, stateOf } from "./shape";
+import { type NodeState, nodesOf, openPaths, stateOf, type TreeNode } from "./shape";
 
 const KINDS = { box: NodeBox };
-// Told and not measured, since nodes outside of the picture are not drawn: lines go to them, and the overview has them.
-const SIZE = { width: WIDTH, height: HEIGHT };
-const HANDLES: NodeHandle[] = [
-  { type: "target", position: Position.Top, x: WIDTH / 2, y: 0, width: 1, height: 1 },
-  { type: "source", position: Position.Bottom, x: WIDTH / 2, y: HEIGHT, width: 1, height: 1 },
-];
 const FIT = { maxZoom: 1, minZoom: 0.4, padding: 0.1 };
 const LEGIBLE = 0.8; // zoom at which labels can be read from an arm's length
 const MOVE = { duration: 300 }; // ms
@@ -33,6 +20,7 @@ interface Props {
   tree: Tree;
   digits: string; // state of every node
   leaf: string; // path of the one that works or waits
+  last: Map<number, NodeState>; // of each node by its index: the last state that was not idle
 }
 
 export function TreeFlow(props: Props) {
@@ -43,27 +31,11 @@ export function TreeFlow(props: Props) {
   );
 }
 
-/** The last state of each node that was not idle: a loop sets its children back. */
-function useLast(tree: Tree, digits: string): Map<number, NodeState> {
-  const last = useRef({ tree, states: new Map<number, NodeState>() });
-  if (last.current.tree !== tree) {
-    last.current = { tree, states: new Map() };
-  }
-  for (const node of nodesOf(tree).values()) {
-    const state = stateOf(node, digits);
-    if (state !== "idle") {
-      last.current.states.set(node.index, state);
-    }
-  }
-  return last.current.states;
-}
-
-function Flow({ tree, digits, leaf }: Props) {
+function Flow({ tree, digits, leaf, last }: Props) {
   const { t } = useTranslation();
   const [byHand, setByHand] = useState(new Map<string, boolean>());
   const [chosen, setChosen] = useState("");
   const nodes = useMemo(() => nodesOf(tree), [tree]);
-  const last = useLast(tree, digits);
   const open = openPaths(nodes, digits, byHand);
   const shape = [...open].join();
   // biome-ignore lint/correctness/useExhaustiveDependencies: `shape` is what `open` holds
@@ -78,24 +50,13 @@ function Flow({ tree, digits, leaf }: Props) {
       id: node.path,
       type: "box",
       position: { x, y },
-      width: WIDTH,
-      height: HEIGHT,
-      measured: SIZE,
-      handles: HANDLES,
+      ...BOX,
       selected: node.path === chosen,
       ariaLabel: `${node.type} ${node.name}: ${t(WORDS[state])}`,
       data: { node, state, was: last.get(node.index) ?? "idle", current: node.path === leaf, hidden },
     };
   });
-  const edges: Edge[] = places
-    .filter(({ node }) => node.path !== "0")
-    .map(({ node }) => ({
-      id: node.path,
-      source: node.path.slice(0, node.path.lastIndexOf(".")),
-      target: node.path,
-      type: "smoothstep",
-      focusable: false,
-    }));
+  const edges = linesTo(places);
   const choose = (path: string) => {
     setChosen(path);
     setByHand((before) => (nodes.get(path)?.children.length ? new Map(before).set(path, !open.has(path)) : before));
@@ -131,7 +92,7 @@ function Flow({ tree, digits, leaf }: Props) {
 }
 
 /** `at`: where the leaf stands that works or waits. */
-function Bar({ at, onAll }: { at: Placed | undefined; onAll: () => void }) {
+function Bar({ at, onAll }: { at: Placed<TreeNode> | undefined; onAll: () => void }) {
   const { t } = useTranslation();
   const flow = useReactFlow();
   const [following, setFollowing] = useState(true);

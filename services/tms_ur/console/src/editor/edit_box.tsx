@@ -1,0 +1,46 @@
+// A node on the picture of the editor: what the check found at it, and how it differs from another version.
+import { Handle, type NodeProps, type Node as Placed, Position } from "@xyflow/react";
+import { memo } from "react";
+import type { Change } from "./difference";
+import type { EditNode } from "./groot";
+
+export interface Facts extends Record<string, unknown> {
+  node: EditNode;
+  errors: number;
+  warnings: number;
+  change: Change;
+  drop: string; // where a dragged node would come: before, inside, after; empty: not here
+}
+
+export type EditBoxNode = Placed<Facts, "edit">;
+
+export const NODES = "application/x-tms-node"; // what is dragged: the path of a node ...
+export const SOURCE = "application/x-tms-source"; // ... or the text of a new one
+
+const MARKS: Record<Change, string> = { same: "", added: "+", removed: "−", changed: "~" };
+
+export const EditBox = memo(function EditBox({ data, selected }: NodeProps<EditBoxNode>) {
+  const { node, errors, warnings, change, drop } = data;
+  const classes = ["node", node.kind, selected && "current", errors > 0 && "failure", change, drop && `drop_${drop}`];
+  return (
+    // biome-ignore lint/a11y/noStaticElementInteractions: keys and buttons do what dragging does
+    <div
+      className={classes.filter(Boolean).join(" ")}
+      data-path={node.path}
+      data-change={change}
+      title={node.element.attributes.map((one) => `${one.name}="${one.value}"`).join("\n")}
+      draggable
+      onDragStart={(event) => event.dataTransfer.setData(NODES, node.path)}
+    >
+      <Handle type="target" position={Position.Top} isConnectable={false} />
+      <strong>{node.type}</strong>
+      <span className="node_mark">
+        {MARKS[change]}
+        {errors > 0 && ` ✖${errors}`}
+        {warnings > 0 && ` ▲${warnings}`}
+      </span>
+      <span className="node_label">{node.machine ? `${node.machine}: ${node.label}` : node.label}</span>
+      <Handle type="source" position={Position.Bottom} isConnectable={false} />
+    </div>
+  );
+});

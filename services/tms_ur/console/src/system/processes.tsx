@@ -1,0 +1,98 @@
+// The processes of every PC; the log of one opens below its row.
+import { restartProcess } from "old/actions.js";
+import { duration } from "old/dom.js";
+import { Fragment, useState } from "react";
+import { useTranslation } from "react-i18next";
+import { Badge } from "../badge";
+import { isDown, type Process } from "../board/alarms";
+import { Command } from "../command";
+import type { State } from "../models";
+import { Said } from "../said";
+import { Table } from "../table";
+import { ProcessLog } from "./log";
+import { type Row, rowsOf } from "./rows";
+
+const HEADS = 8; // columns
+
+interface Props {
+  state: State;
+  open: string; // process whose log is shown, empty: none
+  onOpen: (process: string) => void;
+}
+
+export function Processes({ state, open, onOpen }: Props) {
+  const { t } = useTranslation();
+  const [words, setWords] = useState("");
+  const rows = rowsOf(state, words);
+  return (
+    <>
+      <h2>{t("processes")}</h2>
+      <label>
+        {t("filter")}
+        <input id="process_filter" type="search" value={words} onChange={(event) => setWords(event.target.value)} />
+      </label>
+      {state.hosts.length === 0 && <p id="none_processes">{t("none_processes")}</p>}
+      <Table
+        id="list_processes"
+        label="processes"
+        heads={["process", "host", "state", "uptime", "cpu", "memory", "restarts", "log"]}
+      >
+        {rows.map((row) => (
+          <Fragment key={`${row.host}/${row.process.name}`}>
+            <Line row={row} running={state.runs.length} open={open === row.process.name} onOpen={onOpen} />
+            {open === row.process.name && (
+              <tr>
+                <td colSpan={HEADS}>
+                  <ProcessLog key={open} name={open} />
+                </td>
+              </tr>
+            )}
+          </Fragment>
+        ))}
+      </Table>
+    </>
+  );
+}
+
+interface LineProps {
+  row: Row;
+  running: number; // active runs
+  open: boolean;
+  onOpen: (process: string) => void;
+}
+
+function Line({ row: { host, process }, running, open, onOpen }: LineProps) {
+  const { t } = useTranslation();
+  const { name } = process;
+  return (
+    <tr data-process={name}>
+      <td>{name}</td>
+      <td>{host}</td>
+      <td>
+        <Badge state={shownState(process)} />
+        <Said reason={process.detail} done="logs" />
+      </td>
+      <td>{process.state === "RUNNING" ? duration(process.uptime) : "-"}</td>
+      <td>{process.pid ? `${process.cpu.toFixed(1)} %` : "-"}</td>
+      <td>{process.pid ? `${Math.round(process.memory / 1e6)} MB` : "-"}</td>
+      <td>{process.restarts}</td>
+      <td className="bar">
+        <button
+          type="button"
+          aria-expanded={open}
+          aria-label={t("log_of", { name })}
+          onClick={() => onOpen(open ? "" : name)}
+        >
+          {t("log")}
+        </button>
+        <Command label={t("restart_process", { name })} work={() => restartProcess(name, running)}>
+          {t("restart")}
+        </Command>
+      </td>
+    </tr>
+  );
+}
+
+/** One on demand that is stopped waits for work; an essential one that is stopped is a fault. */
+const shownState = (process: Process) =>
+  process.state === "STOPPED" ? (isDown(process) ? "down" : "on_demand") : process.state;
