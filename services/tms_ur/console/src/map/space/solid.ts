@@ -9,9 +9,19 @@ const LAMP = 0.35; // m, radius
 
 /** A lamp, white: it is coloured where it is shown. */
 export function lamp(): BufferGeometry {
-  const found = new OctahedronGeometry(LAMP);
-  const white = new Float32Array(found.getAttribute("position").count * 3).fill(1);
-  return found.setAttribute("color", new Float32BufferAttribute(white, 3));
+  const positions = [...new OctahedronGeometry(LAMP).getAttribute("position").array];
+  return painted(
+    positions,
+    positions.map(() => 1),
+  );
+}
+
+/** What all shapes of one mesh have, and nothing else. */
+function painted(positions: number[], colours: number[]): BufferGeometry {
+  const found = new BufferGeometry();
+  found.setAttribute("position", new Float32BufferAttribute(positions, 3));
+  found.setAttribute("color", new Float32BufferAttribute(colours, 3));
+  return found;
 }
 
 /** All prisms of a link; each side has one shade, so that no light has to be computed for each pixel. */
@@ -28,10 +38,7 @@ export function solid(all: readonly Prism[]): BufferGeometry {
     }
     positions.push(...corners);
   }
-  const found = new BufferGeometry();
-  found.setAttribute("position", new Float32BufferAttribute(positions, 3));
-  found.setAttribute("color", new Float32BufferAttribute(colours, 3));
-  return found;
+  return painted(positions, colours);
 }
 
 /** Of a triangle: light from above, and somewhat from the left. */
