@@ -3,6 +3,7 @@
 from types import SimpleNamespace
 from typing import Any
 
+import pytest
 from geometry_msgs.msg import PoseStamped, TransformStamped
 from tf2_msgs.msg import TFMessage
 
@@ -29,7 +30,8 @@ def framed(x: float) -> TFMessage:
     return TFMessage(transforms=[one])
 
 
-def test_places_of_machines_and_their_ages() -> None:
+def test_places_of_machines_and_their_ages(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("tms_ur.site_client.table", lambda _: [])
     ros: Any = SimpleNamespace(
         peer=lambda *_: None, subscribe=lambda *_, **__: None, prepare=lambda *_: None,
         sample_arrivals=lambda _, topic: lambda: [Arrival(posed(1.234), monotonic() - AGE, 1)],
