@@ -18,6 +18,7 @@ FILES = sorted(path for path in STATIC.rglob("*") if path.is_file())
 CODE = {path: path.read_text(encoding="utf-8") for path in FILES if path.suffix == ".js"}
 SOURCE = PROJECT / "services" / "tms_ur" / "console" / "src"
 REACT = {path: path.read_text(encoding="utf-8") for path in SOURCE.rglob("*.ts*") if path.name != "api.ts"}
+UNLINKED = {"editor"}  # it is reached from the page of tasks
 REACT_PAGES = set(re.findall(r"^  (\w+): ", (SOURCE / "pages.tsx").read_text(encoding="utf-8"), re.MULTILINE))
 PAGES = {path: path.read_text(encoding="utf-8") for path in FILES if path.suffix == ".html"}
 
@@ -77,7 +78,9 @@ def test_a_run_has_the_states_and_words_of_the_command_line() -> None:
 
 def test_every_page_has_a_title_and_every_title_a_page() -> None:
     pages = {path.stem: text for path, text in CODE.items() if path.parent.name == "pages"}
-    assert {key.removeprefix("p_") for key in table()["en"] if key.startswith("p_")} == pages.keys() | REACT_PAGES
+    assert {
+        key.removeprefix("p_") for key in table()["en"] if key.startswith("p_")
+    } == pages.keys() | REACT_PAGES - UNLINKED
     for name, text in pages.items():
         assert {"build", "update"} <= set(re.findall(r"^export function (\w+)", text, re.MULTILINE)), name
 
@@ -119,7 +122,7 @@ def test_files_are_served() -> None:
     client = Client(app(FakeSiteClient()))
     assert client.get("/").text == (BUILT / "index.html").read_text(encoding="utf-8")
     assert client.get("/dom.js").headers["content-type"].startswith("text/javascript")
-    assert client.get("/pages/site.js").status_code == client.get("/panel.html").status_code == 200
+    assert client.get("/server.js").status_code == client.get("/panel.html").status_code == 200
     assert client.get("/../api.py").status_code == client.get("/%2e%2e/api.py").status_code == 404
 
 
