@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from tms_ur.audit import Audit
     from tms_ur.site_client import SiteClient
 
-STATIC = File(__file__).parent / "static"  # pages that are not React yet
+STATIC = File(__file__).parent / "static"  # the panel, and what the pages share with it
 BUILT = File(__file__).parent / "built"  # of console/, by `make setup`
 WORKERS = 8  # threads for calls that wait for a module
 

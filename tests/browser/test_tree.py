@@ -74,6 +74,7 @@ def test_a_node_that_is_clicked_on_opens_and_tells_more(page: Page, address: str
     details = page.locator("#node_details")
     expect(details).to_contain_text("R0.3.2")
     expect(details).to_contain_text("Running")
+    expect(details).to_contain_text("Tries (0)")
     page.get_by_role("button", name="Fit").click()
     branch = page.locator("[data-path='0.4']")
     expect(branch).to_contain_text(f"(+{LEAVES})")

@@ -16,7 +16,7 @@ from conftest import CLI, NO_CONSOLE, PROJECT, Mesh, ports_of, running, site_dat
 
 pytestmark = [pytest.mark.system, pytest.mark.timeout(600)]
 SPEED = 5.0  # times real time; twice as fast needs a PC that does nothing else
-VOLUME = float(os.environ.get("TMS_EARTH", "6"))  # m3 as it lay
+VOLUME = float(os.environ.get("TMS_EARTH", "5"))  # m3 as it lay: one truckload, and a bucket or two for the other truck
 RECORDS = ("zx200", "shared", "earthwork")
 MACHINES = {
     "zx200": {"model": "zx200"},
@@ -36,7 +36,7 @@ KILLED = (  # one after the other, a bucket later each
     "tms:ground",
 )
 ACTIVE = ("preparing", "running", "stopping", "held")
-BUCKET = 0.75  # m3 as it lay, at most: 0.95 loose; less on a full PC, where tms:ground follows fast machines late
+BUCKET = 0.75  # m3 as it lay, at most: 0.95 loose
 LOST = 2  # sums of the last seconds before tms:db was killed: it keeps the past of records in memory for so long
 
 

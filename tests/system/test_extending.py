@@ -1,6 +1,7 @@
 """What it costs to add something: each row of the table of CONTRIBUTING.md, done to a copy of the project."""
 
 import json
+import os
 import re
 import shutil
 import subprocess
@@ -60,14 +61,18 @@ def command() -> None:
     click.echo("hello")
 '''
 PAGE = """// Hello: how many machines there are.
-import { at, heading, make, setText } from "../dom.js";
+import { useTranslation } from "react-i18next";
+import { useLive } from "../live";
 
-export function build(root) {
-  root.append(heading("p_hello"), make("p", { id: "hello_machines" }));
-}
-
-export function update(state) {
-  setText(at("hello_machines"), String(state.machines.length));
+export default function HelloPage() {
+  const { t } = useTranslation();
+  const { state } = useLive();
+  return (
+    <>
+      <h2>{t("p_hello")}</h2>
+      <p id="hello_machines">{state?.machines.length}</p>
+    </>
+  );
 }
 """
 TEXTS = '    "p_hello": "Hello",\n    "f_nodes": "Number of nodes",\n'  # in both languages
@@ -109,9 +114,10 @@ def add(project: Path) -> set[str]:
     (services / "tms_ts" / "nodes" / "greet.py").write_text(NODE)
     (services / "tms_ts" / "nodes" / "pause.py").write_text(PAUSE)
     (services / "tms_cli" / "commands" / "hello.py").write_text(VERB)
-    static = services / "tms_ur" / "static"
-    (static / "pages" / "hello.js").write_text(PAGE)
-    insert(static / "words.js", TEXTS, behind='"p_tasks":', times=2)
+    page = services / "tms_ur" / "console" / "src" / "hello" / "hello_page.tsx"
+    page.parent.mkdir()
+    page.write_text(PAGE)
+    insert(services / "tms_ur" / "static" / "words.js", TEXTS, behind='"p_tasks":', times=2)
     insert(services / "tms_ts" / "execution.py", FIELD, behind="facts.machines, facts.records = ")
     (machines / "zx210.yaml").write_text((machines / "zx200.yaml").read_text() + LINE)
     with (project / "configs" / "sensing.yaml").open("a") as inputs:
@@ -128,6 +134,16 @@ def add(project: Path) -> set[str]:
         "console page",
         "field of a run",
     }
+
+
+def build_console(project: Path) -> None:
+    """As `make console` does; with the packages that are here already."""
+    (project / "node_modules").symlink_to(PROJECT / "node_modules")
+    path = f"{PROJECT / '.venv-console' / 'bin'}:{os.environ['PATH']}"
+    command = ["npm", "--silent", "run", "build"]
+    subprocess.run(
+        command, cwd=project / "services" / "tms_ur" / "console", env={**os.environ, "PATH": path}, check=True
+    )
 
 
 def look(copy: Copy, run: str, nodes: int) -> None:
@@ -151,7 +167,9 @@ def copy(own_domain: int, tmp_path: Path) -> Iterator[Copy]:
     for part in ("services", "configs", "deploy"):
         shutil.copytree(PROJECT / part, project / part, ignore=shutil.ignore_patterns("interfaces", "__pycache__"))
     (project / ".venv-store").symlink_to(PROJECT / ".venv-store")
-    assert add(project) | {"reason"} == ROWS  # tests/contract/test_reasons.py walks every reason
+    added = add(project)
+    build_console(project)
+    assert added | {"reason"} == ROWS  # tests/contract/test_reasons.py walks every reason
     data = site_data(own_domain, ports_of(own_domain), name="copy", machines={"zx200_2": {"model": "zx210"}})
     (project / "site.yaml").write_text(yaml.safe_dump(data))
     made = Copy(project / "site.yaml", tmp_path / "state")

@@ -2,7 +2,7 @@
 import react from "@vitejs/plugin-react";
 import { defineConfig, type Plugin } from "vite";
 
-/** Pages that are not React yet, and what these share with the frame, are served as they are: ../static/x.js as /x.js. */
+/** What the pages share with the panel of one task is served as it is: ../static/x.js as /x.js. */
 function old(served: boolean): Plugin {
   const file = (name: string) => new URL(`../static/${name}`, import.meta.url).pathname;
   return {

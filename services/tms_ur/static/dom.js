@@ -1,4 +1,4 @@
-// Building blocks of all pages.
+// Building blocks of the panel, and what the pages share with it.
 import { t } from "./strings.js";
 
 const MARKS = { moving: "▶", running: "▶", RUNNING: "▶", standing: "■", success: "✔", STOPPED: "■", on_demand: "■", stopping: "…",
@@ -6,7 +6,6 @@ const MARKS = { moving: "▶", running: "▶", RUNNING: "▶", standing: "■", 
   alive: "✔", waiting: "…", place_free: "✔", place_granted: "…", place_held: "■", place_leaving: "…" };
 const GOOD = new Set(["moving", "standing", "running", "success", "RUNNING", "armed", "alive", "place_held"]);
 const CALM = new Set(["STOPPED", "on_demand", "EXITED", "place_free", "place_granted", "place_leaving", "cancelled", "preparing", "stopping", "STARTING", "STOPPING", "held", "by_hand", "waiting"]);
-const SVG = "http://www.w3.org/2000/svg";
 
 export const at = (id) => document.getElementById(id);
 
@@ -20,22 +19,6 @@ export function make(tag, options = {}, ...children) {
   }
   element.append(...children);
   return element;
-}
-
-/** A new SVG element. */
-export function draw(tag, attributes = {}, ...children) {
-  const element = document.createElementNS(SVG, tag);
-  change(element, attributes);
-  element.append(...children);
-  return element;
-}
-
-export function change(element, attributes) {
-  for (const [name, value] of Object.entries(attributes)) {
-    if (element.getAttribute(name) !== String(value)) {
-      element.setAttribute(name, value);
-    }
-  }
 }
 
 /** Keeps one child per item, in order, and reuses it, so that buttons keep their focus at each new state. */
@@ -65,11 +48,6 @@ export const mark = (state) => MARKS[state] ?? "!";
 
 export const tone = (state) => (GOOD.has(state) ? "good" : CALM.has(state) ? "calm" : "bad");
 
-export function setBadge(element, state) {
-  setText(element, `${mark(state)} ${t(state)}`);
-  element.className = `badge ${tone(state)}`;
-}
-
 export function part(element, name) {
   return element.querySelector(`[data-part="${name}"]`);
 }
@@ -94,18 +72,6 @@ export function relabelAll() {
   document.querySelectorAll("[data-relabel]").forEach((element) => element.relabel());
 }
 
-/** A table that scrolls in a region of its own; `label` distinguishes it from other tables of the page. */
-export function table(id, label, heads) {
-  const cells = heads.map((head) => make("th", { scope: "col", data: { t: head } }));
-  const body = make("tbody", { id });
-  return make("div", { className: "scroll", tabIndex: 0, role: "region", data: { label } },
-    make("table", {}, make("thead", {}, make("tr", {}, ...cells)), body));
-}
-
-export function heading(key, level = "h2") {
-  return make(level, { data: { t: key } });
-}
-
 export function duration(seconds) {
   if (seconds === null) {
     return t("never");
@@ -114,10 +80,6 @@ export function duration(seconds) {
     return `${seconds.toFixed(seconds < 10 ? 1 : 0)} s`;
   }
   return seconds < 7200 ? `${Math.floor(seconds / 60)} min` : `${(seconds / 3600).toFixed(1)} h`;
-}
-
-export function number(value, digits) {
-  return value === null ? "-" : value.toFixed(digits);
 }
 
 export function say(text, bad = false) {

@@ -1,5 +1,5 @@
 // The panel of one task: a green start, a red software stop, and the questions of the run.
-import { at, keep, setText } from "./dom.js";
+import { at, keep, relabelAll, setText } from "./dom.js";
 import { buildQuestion, fillQuestion } from "./questions.js";
 import { ask, watch } from "./server.js";
 import { fillReason, once, sayError } from "./reasons.js";
@@ -47,6 +47,7 @@ at("start").addEventListener("click", (event) => once(event.currentTarget, async
 at("stop").addEventListener("click", () => stop());
 at("language").addEventListener("click", switchLanguage);
 onLanguage(() => {
+  relabelAll();
   name();
   if (state !== null) {
     heard(state);

@@ -158,6 +158,8 @@ export const WORDS = {
     "RUNNING_NODE": "実行中",
     "SUCCESS": "成功",
     "FAILURE": "失敗",
+    "halted": "中止",
+    "attempts": "試行",
     "tree_label": "行動ツリー",
     "from_template": "テンプレート {name}",
     "map": "地図",
@@ -590,6 +592,8 @@ export const WORDS = {
     "RUNNING_NODE": "Running",
     "SUCCESS": "Success",
     "FAILURE": "Failure",
+    "halted": "Halted",
+    "attempts": "Tries",
     "tree_label": "Behaviour tree",
     "from_template": "template {name}",
     "map": "Map",
@@ -866,5 +870,5 @@ export const WORDS = {
   }
 };
 
-// A page is a file of pages/ (or of ../console/src) and its title p_<name> here; the links to the pages have this order.
+// A page is <name>/<name>_page.tsx of ../console/src and its title p_<name> here; the links to the pages have this order.
 export const PAGE_NAMES = Object.keys(WORDS.en).filter((key) => key.startsWith("p_")).map((key) => key.slice(2));

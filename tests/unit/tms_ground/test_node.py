@@ -50,7 +50,7 @@ class World:
         self.app: Any = SimpleNamespace(
             site=load_site(str(folder / "site.yaml")),
             ros=SimpleNamespace(
-                sample=lambda _, topic, *__: lambda: self.waiting.pop(topic, []),
+                sample=lambda _, topic, depth=1: lambda: self.waiting.pop(topic, [])[-depth:],
                 subscribe=lambda *_, **__: None,
                 publisher=self.publisher,
                 now=lambda: Time(sec=int(self.now)),
@@ -102,11 +102,14 @@ def test_a_pass_is_told_and_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     assert again.published["/zx200/soil_volume"][-1] == pytest.approx(told[-1], abs=0.01)
 
 
-def test_a_look_that_comes_late_takes_all_that_was_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("late", [8, 100])
+def test_a_look_that_comes_late_takes_all_that_was_told(
+    late: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     world = World(tmp_path, monkeypatch)
     node.start(world.app)
     taken = node.REPORTS.labels("zx200").collect()[0].samples[0]
-    world.run(late=8)
+    world.run(late)
     world.steps["ground"]()
     more = node.REPORTS.labels("zx200").collect()[0].samples[0].value - taken.value
     assert more == pytest.approx(len(list(moved(dig_poses(), rate=25.0))), abs=1)

@@ -18,8 +18,7 @@ FILES = sorted(path for path in STATIC.rglob("*") if path.is_file())
 CODE = {path: path.read_text(encoding="utf-8") for path in FILES if path.suffix == ".js"}
 SOURCE = PROJECT / "services" / "tms_ur" / "console" / "src"
 REACT = {path: path.read_text(encoding="utf-8") for path in SOURCE.rglob("*.ts*") if path.name != "api.ts"}
-UNLINKED = {"editor"}  # it is reached from the page of tasks
-REACT_PAGES = set(re.findall(r"^  (\w+): ", (SOURCE / "pages.tsx").read_text(encoding="utf-8"), re.MULTILINE))
+REACT_PAGES = {"board", *(path.parent.name for path in SOURCE.glob("*/*_page.tsx"))}
 PAGES = {path: path.read_text(encoding="utf-8") for path in FILES if path.suffix == ".html"}
 
 
@@ -51,9 +50,7 @@ def used() -> set[str]:
             found |= set(re.findall(r'"(\w+)"', label + heads))
     for text in CODE.values():
         found |= set(re.findall(r'\bt\("(\w+)"', text)) | set(re.findall(r'\b(?:t|label): "(\w+)"', text))
-        found |= set(re.findall(r'\bheading\("(\w+)"', text)) | set(re.findall(r'\bbutton\("(\w+)"', text))
-        for label, heads in re.findall(r'\btable\("\w+", ("\w+"), \[([^\]]*)\]', text):
-            found |= set(re.findall(r'"(\w+)"', label + heads))
+        found |= set(re.findall(r'\bbutton\("(\w+)"', text))
     return found
 
 
@@ -76,31 +73,15 @@ def test_a_run_has_the_states_and_words_of_the_command_line() -> None:
     assert {state: words.get(state) for state in wanted} == wanted
 
 
-def test_every_page_has_a_title_and_every_title_a_page() -> None:
-    pages = {path.stem: text for path, text in CODE.items() if path.parent.name == "pages"}
-    assert {
-        key.removeprefix("p_") for key in table()["en"] if key.startswith("p_")
-    } == pages.keys() | REACT_PAGES - UNLINKED
-    for name, text in pages.items():
-        assert {"build", "update"} <= set(re.findall(r"^export function (\w+)", text, re.MULTILINE)), name
+def test_every_title_has_a_page() -> None:
+    assert {key.removeprefix("p_") for key in table()["en"] if key.startswith("p_")} <= REACT_PAGES
 
 
 def test_every_element_that_the_code_asks_for_is_made_somewhere() -> None:
     everything = "".join([*PAGES.values(), *CODE.values(), *REACT.values()])
-    made = set(re.findall(r'\bid(?:="|: "| = ")(\w+)"', everything)) | set(re.findall(r'\btable\("(\w+)"', everything))
+    made = set(re.findall(r'\bid(?:="|: "| = ")(\w+)"', everything))
     asked = set(re.findall(r'\bat\("(\w+)"\)', "".join(CODE.values())))
     assert asked <= made
-
-
-def test_no_page_uses_the_ids_of_another_one() -> None:
-    """An answer that comes after a change of pages finds nothing to write into."""
-    made = [
-        re.findall(r'\bid(?:: | = )"(\w+)"|\btable\("(\w+)"', text)
-        for path, text in CODE.items()
-        if path.parent.name == "pages"
-    ]
-    names = [one or other for found in made for one, other in set(found)]
-    assert sorted(names) == sorted(set(names))
 
 
 @pytest.mark.parametrize("file", [*CODE], ids=lambda path: path.name)
@@ -122,7 +103,7 @@ def test_files_are_served() -> None:
     client = Client(app(FakeSiteClient()))
     assert client.get("/").text == (BUILT / "index.html").read_text(encoding="utf-8")
     assert client.get("/dom.js").headers["content-type"].startswith("text/javascript")
-    assert client.get("/server.js").status_code == client.get("/panel.html").status_code == 200
+    assert client.get("/panel.js").status_code == client.get("/panel.html").status_code == 200
     assert client.get("/../api.py").status_code == client.get("/%2e%2e/api.py").status_code == 404
 
 

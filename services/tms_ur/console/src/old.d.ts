@@ -1,4 +1,4 @@
-// What ../../static still has: pages that are not React yet, and what these share with the frame.
+// What ../../static has: what the pages share with the panel of one task.
 declare module "old/words.js" {
   export const WORDS: Record<"ja" | "en", Record<string, string>>;
   export const PAGE_NAMES: string[];
@@ -12,7 +12,6 @@ declare module "old/strings.js" {
 
 declare module "old/dom.js" {
   export function say(text: string, bad?: boolean): void;
-  export function relabelAll(): void;
   export function mark(state: string): string;
   export function tone(state: string): "good" | "calm" | "bad";
   export function duration(seconds: number | null): string;

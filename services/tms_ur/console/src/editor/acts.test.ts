@@ -1,6 +1,6 @@
 import { expect, test } from "vitest";
 import { add, copy, move, remove, setAttribute, step } from "./acts";
-import { difference, everyDifference } from "./difference";
+import { difference, differing, everyDifference } from "./difference";
 import { begun, type Draft, edit, isChanged, redo, undo } from "./draft";
 import { type EditNode, emptyTask, linesOf, treesOf, withTree } from "./groot";
 import { groupsOf, typesOf } from "./palette";
@@ -155,5 +155,6 @@ test("the difference tells new, lost and changed nodes", () => {
     ["changed", "d"],
   ]);
   expect(new Set(found.map((one) => one.path)).size).toBe(found.length);
+  expect([...differing(difference(at(TREE, "0"), at(now, "0")))]).toEqual(["0", "0.0"]);
   expect(difference(at(TREE, "0"), null).map((one) => one.change)).toEqual(["removed"]);
 });

@@ -41,7 +41,7 @@ export function Canvas({ tree, chosen, check, onChoose, onAct, onDrop }: Props) 
     const marks = check.marks.get(keyOf({ tree: tree.id, path: node.path }));
     const [errors, warnings] = [marks?.errors.length ?? 0, marks?.warnings.length ?? 0];
     const here = drop.path === node.path ? drop.where : "";
-    const data = { node, errors, warnings, change: "same" as const, drop: here };
+    const data = { node, errors, warnings, change: "same" as const, hidden: 0, drop: here };
     return { id: node.path, type: "edit", position: { x, y }, ...BOX, selected: node.path === chosen, data };
   });
   const pressed = (event: KeyboardEvent) => {

@@ -1,5 +1,5 @@
 // What differs between two versions of a tree, node by node.
-import type { EditNode } from "./groot";
+import { type EditNode, parentPath } from "./groot";
 
 export type Change = "same" | "added" | "removed" | "changed";
 
@@ -75,6 +75,18 @@ export function difference(old: EditNode | null, now: EditNode | null): DiffNode
       return [{ path: here, node, before: change === "changed" ? a : null, change, children: build(below, here) }];
     });
   return build(paired(old ? [old] : [], now ? [now] : [], known), "");
+}
+
+/** Paths of nodes below which something differs, and of the roots: all else can be folded. */
+export function differing(nodes: DiffNode[]): Set<string> {
+  const paths = new Set(nodes.map((one) => one.path));
+  for (const one of everyDifference(nodes)) {
+    for (let path = one.change === "same" ? "" : one.path; path !== ""; path = parentPath(path)) {
+      paths.add(parentPath(path));
+    }
+  }
+  paths.delete("");
+  return paths;
 }
 
 export function* everyDifference(nodes: DiffNode[]): Generator<DiffNode> {

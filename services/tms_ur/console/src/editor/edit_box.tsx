@@ -9,6 +9,7 @@ export interface Facts extends Record<string, unknown> {
   errors: number;
   warnings: number;
   change: Change;
+  hidden: number; // children that are folded away
   drop: string; // where a dragged node would come: before, inside, after; empty: not here
 }
 
@@ -17,10 +18,10 @@ export type EditBoxNode = Placed<Facts, "edit">;
 export const NODES = "application/x-tms-node"; // what is dragged: the path of a node ...
 export const SOURCE = "application/x-tms-source"; // ... or the text of a new one
 
-const MARKS: Record<Change, string> = { same: "", added: "+", removed: "−", changed: "~" };
+export const MARKS: Record<Change, string> = { same: "", added: "+", removed: "−", changed: "~" };
 
 export const EditBox = memo(function EditBox({ data, selected }: NodeProps<EditBoxNode>) {
-  const { node, errors, warnings, change, drop } = data;
+  const { node, errors, warnings, change, hidden, drop } = data;
   const classes = ["node", node.kind, selected && "current", errors > 0 && "failure", change, drop && `drop_${drop}`];
   return (
     // biome-ignore lint/a11y/noStaticElementInteractions: keys and buttons do what dragging does
@@ -33,7 +34,10 @@ export const EditBox = memo(function EditBox({ data, selected }: NodeProps<EditB
       onDragStart={(event) => event.dataTransfer.setData(NODES, node.path)}
     >
       <Handle type="target" position={Position.Top} isConnectable={false} />
-      <strong>{node.type}</strong>
+      <strong>
+        {node.type}
+        {hidden > 0 && ` (+${hidden})`}
+      </strong>
       <span className="node_mark">
         {MARKS[change]}
         {errors > 0 && ` ✖${errors}`}

@@ -73,7 +73,6 @@ export function Editor({ rest, site, target }: { rest: string; site: Site; targe
       />
       <Bar cannot={ALL.filter((one) => acts[one] === undefined)} onAct={act} />
       <div className="ed_grid">
-        <PaletteList groups={groups} where={where} onWhere={setWhere} onAdd={(source) => put(source, node, where)} />
         <div>
           <p role="status" className="ed_chosen">
             {node ? t("ed_is_chosen", { node: `${node.type} ${node.machine} ${node.label}`.trim() }) : t("ed_choose")}
@@ -99,6 +98,7 @@ export function Editor({ rest, site, target }: { rest: string; site: Site; targe
             <span>{t("ed_keys_text")}</span>
           </details>
         </div>
+        <PaletteList groups={groups} where={where} onWhere={setWhere} onAdd={(source) => put(source, node, where)} />
         <div>
           {node && (
             <PortForm

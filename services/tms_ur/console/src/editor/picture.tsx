@@ -50,7 +50,7 @@ function Flow({ boxes, places, chosen, label, onChoose }: Props) {
           selectionKeyCode={null}
           minZoom={0.05}
           maxZoom={2}
-          fitView
+          fitView={places.length <= SMALL} // of a larger one, the chosen node
           fitViewOptions={FIT}
           onlyRenderVisibleElements
           proOptions={{ hideAttribution: true }} // a link out of the site
@@ -76,7 +76,7 @@ function Flow({ boxes, places, chosen, label, onChoose }: Props) {
 function useWhole(count: number) {
   const flow = useReactFlow();
   useEffect(() => {
-    if (count <= SMALL) {
+    if (count <= SMALL && flow.viewportInitialized) {
       flow.fitView(FIT);
     }
   }, [count, flow]);
@@ -88,8 +88,9 @@ function useShown(place: Placed<{ path: string }> | undefined) {
   const width = useStore((state) => state.width);
   const height = useStore((state) => state.height);
   const [x, y] = [place?.x, place?.y];
+  const ready = flow.viewportInitialized && width > 0;
   useEffect(() => {
-    if (x === undefined || y === undefined || !flow.viewportInitialized) {
+    if (x === undefined || y === undefined || !ready) {
       return;
     }
     const view = flow.getViewport();
@@ -98,5 +99,5 @@ function useShown(place: Placed<{ path: string }> | undefined) {
     if (!inside) {
       flow.setCenter(x + WIDTH / 2, y + HEIGHT / 2, { zoom: view.zoom });
     }
-  }, [x, y, width, height, flow]);
+  }, [x, y, width, height, flow, ready]);
 }

@@ -1,13 +1,13 @@
 // How the drawn tree differs from the stored one or from another task, as a picture.
-import { useEffect, useState } from "react";
+import { useEffect, useMemo, useState } from "react";
 import { useTranslation } from "react-i18next";
 import type { Task } from "../models";
 import { Problem } from "../problem";
 import { get } from "../server";
 import { BOX } from "../tree/boxes";
 import { type Placed, placed } from "../tree/layout";
-import { type Change, type DiffNode, difference, everyDifference } from "./difference";
-import type { EditBoxNode } from "./edit_box";
+import { type Change, type DiffNode, difference, differing, everyDifference } from "./difference";
+import { type EditBoxNode, MARKS } from "./edit_box";
 import { type EditTree, treesOf } from "./groot";
 import type { Types } from "./palette";
 import { Picture } from "./picture";
@@ -64,36 +64,43 @@ export function VersionsView({ tree, stored, tasks, types }: Props) {
 
 function Drawn({ tree, text, types }: { tree: EditTree; text: string; types: Types }) {
   const { t } = useTranslation();
-  const [chosen, setChosen] = useState("");
-  const trees = treesOf(text, types);
-  const old = trees.find((one) => one.id === tree.id) ?? trees[0];
-  const roots = difference(old?.root ?? null, tree.root);
-  const all = [...everyDifference(roots)];
-  const places = beside(roots);
+  const [chosen, setChosen] = useState("0");
+  const roots = useMemo(() => {
+    const trees = treesOf(text, types);
+    const old = trees.find((one) => one.id === tree.id) ?? trees[0];
+    return difference(old?.root ?? null, tree.root);
+  }, [tree, text, types]);
+  const open = differing(roots);
+  const places = beside(roots, open);
   const boxes = places.map(({ node, x, y }): EditBoxNode => {
-    const data = { node: { ...node.node, path: node.path }, errors: 0, warnings: 0, change: node.change, drop: "" };
+    const hidden = open.has(node.path) ? 0 : node.children.length;
+    const shown = { ...node.node, path: node.path };
+    const data = { node: shown, errors: 0, warnings: 0, change: node.change, hidden, drop: "" };
     return { id: node.path, type: "edit", position: { x, y }, ...BOX, selected: node.path === chosen, data };
   });
+  const found = [...everyDifference(roots)].filter((one) => one.change !== "same");
+  const count = (change: Change) => `${t(`ed_${change}`)}: ${found.filter((one) => one.change === change).length}`;
   return (
     <>
-      <p role="status">
-        {all.every((one) => one.change === "same")
-          ? t("equal")
-          : SHOWN.map((change) => `${t(`ed_${change}`)}: ${all.filter((one) => one.change === change).length}`).join(
-              ", ",
-            )}
-      </p>
+      <p role="status">{found.length === 0 ? t("equal") : SHOWN.map(count).join(", ")}</p>
+      <div className="bar ed_changes">
+        {found.map((one) => (
+          <button key={one.path} type="button" aria-pressed={one.path === chosen} onClick={() => setChosen(one.path)}>
+            {`${MARKS[one.change]} ${one.node.type} ${one.node.label}`}
+          </button>
+        ))}
+      </div>
       <Picture boxes={boxes} places={places} chosen={chosen} label={t("difference")} onChoose={setChosen} />
-      <Detail node={all.find((one) => one.path === chosen)} />
+      <Detail node={found.find((one) => one.path === chosen)} />
     </>
   );
 }
 
 /** One tree, or both roots side by side. */
-function beside(roots: DiffNode[]): Placed<DiffNode>[] {
+function beside(roots: DiffNode[], open: Set<string>): Placed<DiffNode>[] {
   let right = 0;
   return roots.flatMap((root) => {
-    const places = placed(root, null);
+    const places = placed(root, open);
     const left = Math.min(...places.map((one) => one.x));
     const moved = places.map((one) => ({ ...one, x: one.x - left + right }));
     right = Math.max(...moved.map((one) => one.x)) + 2 * BOX.width;

@@ -8,7 +8,9 @@ import { useLive } from "../live";
 import type { Run } from "../models";
 import { Problem } from "../problem";
 import { clock } from "../texts";
+import { Attempts } from "../tree/attempts";
 import { TreeFlow } from "../tree/flow";
+import type { TreeNode } from "../tree/shape";
 import { Cursor } from "./cursor";
 import { Events, textOf } from "./events";
 import { LaneView } from "./lane_view";
@@ -63,8 +65,10 @@ function Line({ id, run, seconds, journal }: Props & { journal: Journal }) {
 }
 
 function PastTree({ journal, time }: { journal: Journal; time: number }) {
-  const moment = momentAfter(journal, countAt(journal, time));
-  return journal.tree && <TreeFlow tree={journal.tree} {...moment} />;
+  const count = countAt(journal, time);
+  const moment = momentAfter(journal, count);
+  const facts = (node: TreeNode) => <Attempts journal={journal} count={count} now={time} node={node} />;
+  return journal.tree && <TreeFlow tree={journal.tree} {...moment} facts={facts} />;
 }
 
 /** The further facts of the run that the scheduler has recorded. */

@@ -1,9 +1,16 @@
 // What is known of the node that was chosen.
+import type { ReactNode } from "react";
 import { useTranslation } from "react-i18next";
 import { WORDS } from "./node_box";
 import type { NodeState, TreeNode } from "./shape";
 
-export function Details({ node, state }: { node: TreeNode | undefined; state: NodeState }) {
+interface Props {
+  node: TreeNode | undefined;
+  state: NodeState;
+  children: ReactNode; // what else is known of it
+}
+
+export function Details({ node, state, children }: Props) {
   const { t } = useTranslation();
   if (node === undefined) {
     return null;
@@ -29,6 +36,7 @@ export function Details({ node, state }: { node: TreeNode | undefined; state: No
           ))}
         </tbody>
       </table>
+      {children}
     </aside>
   );
 }

@@ -2,7 +2,7 @@
 import "@xyflow/react/dist/base.css";
 import "./tree.css";
 import { MiniMap, ReactFlow, ReactFlowProvider, useReactFlow } from "@xyflow/react";
-import { useEffect, useMemo, useState } from "react";
+import { type ReactNode, useEffect, useMemo, useState } from "react";
 import { useTranslation } from "react-i18next";
 import type { Tree } from "../models";
 import { BOX, linesTo } from "./boxes";
@@ -21,6 +21,7 @@ interface Props {
   digits: string; // state of every node
   leaf: string; // path of the one that works or waits
   last: Map<number, NodeState>; // of each node by its index: the last state that was not idle
+  facts: (node: TreeNode) => ReactNode; // what else is known of the node that is chosen
 }
 
 export function TreeFlow(props: Props) {
@@ -31,7 +32,7 @@ export function TreeFlow(props: Props) {
   );
 }
 
-function Flow({ tree, digits, leaf, last }: Props) {
+function Flow({ tree, digits, leaf, last, facts }: Props) {
   const { t } = useTranslation();
   const [byHand, setByHand] = useState(new Map<string, boolean>());
   const [chosen, setChosen] = useState("");
@@ -61,6 +62,7 @@ function Flow({ tree, digits, leaf, last }: Props) {
     setChosen(path);
     setByHand((before) => (nodes.get(path)?.children.length ? new Map(before).set(path, !open.has(path)) : before));
   };
+  const looked = nodes.get(chosen);
   const all = () => setByHand(new Map([...nodes.keys()].map((path) => [path, true])));
   return (
     <div className="tree_and_details">
@@ -86,7 +88,9 @@ function Flow({ tree, digits, leaf, last }: Props) {
           </ReactFlow>
         </div>
       </div>
-      <Details node={nodes.get(chosen)} state={stateOf(nodes.get(chosen) ?? { index: -1 }, digits)} />
+      <Details node={looked} state={stateOf(looked ?? { index: -1 }, digits)}>
+        {looked && facts(looked)}
+      </Details>
     </div>
   );
 }

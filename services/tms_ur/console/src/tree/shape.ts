@@ -17,7 +17,8 @@ export interface TreeNode {
   children: TreeNode[];
 }
 
-const port = (ports: string, name: string) => new RegExp(`\\b${name}="([^"]*)"`).exec(ports)?.[1] ?? "";
+/** The value of a port, empty where the node has none of this name. */
+export const port = (ports: string, name: string) => new RegExp(`\\b${name}="([^"]*)"`).exec(ports)?.[1] ?? "";
 
 /** The root, and every node by its path. */
 export function nodesOf(tree: Tree): Map<string, TreeNode> {

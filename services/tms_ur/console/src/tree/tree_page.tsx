@@ -9,6 +9,8 @@ import type { ActiveRun, State, Tree } from "../models";
 import { Said } from "../said";
 import { said, timeOfDay } from "../texts";
 import { TreeFlow } from "./flow";
+import { LiveFacts } from "./live_facts";
+import type { TreeNode } from "./shape";
 import { useLast } from "./use_last";
 
 interface Shown {
@@ -30,6 +32,8 @@ export default function TreePage({ rest }: { rest: string }) {
     shown.current = { id: run.run_id, tree, digits: run.nodes, leaf: run.leaf };
   }
   const last = useLast(shown.current?.id ?? "", shown.current?.digits ?? "");
+  const id = shown.current?.id ?? "";
+  const facts = (node: TreeNode) => <LiveFacts key={`${id} ${node.path}`} run={id} node={node} />;
   const alive = state?.scheduler.alive ?? true;
   return (
     <>
@@ -50,7 +54,7 @@ export default function TreePage({ rest }: { rest: string }) {
         <p id="no_tree">{t(alive ? "no_tree" : "scheduler_silent")}</p>
       )}
       {state && run && <Why run={run} state={state} />}
-      {shown.current && <TreeFlow key={shown.current.id} {...shown.current} last={last} />}
+      {shown.current && <TreeFlow key={shown.current.id} {...shown.current} last={last} facts={facts} />}
     </>
   );
 }
