@@ -43,8 +43,7 @@ function Try({ attempt, now, journal }: { attempt: Attempt; now: number; journal
   const word = state === "idle" ? "halted" : WORDS[state];
   return (
     <li>
-      {clock(new Date(begin).toISOString())} {duration(Math.max(0, (end ?? now) - begin) / 1000)}{" "}
-      {t(word)}
+      {clock(new Date(begin).toISOString())} {duration(Math.max(0, (end ?? now) - begin) / 1000)} {t(word)}
       {reason && <div>{reason}</div>}
     </li>
   );
