@@ -627,7 +627,7 @@ def test_every_endpoint_is_in_the_document(client: Client) -> None:
         "/api/runs/{run_id}/export", "/api/audit", "/api/machines/{name}/scene",
         "/api/processes/{name}/log", "/api/processes/{name}/restart",
         "/api/templates", "/api/areas", "/api/areas/check", "/api/areas/enable", "/api/ground",
-        "/api/places", "/api/places/{name}/revoke",
+        "/api/places", "/api/palette", "/api/templates/{name}", "/api/places/{name}/revoke",
     }  # fmt: skip
     assert {method for path in document["paths"].values() for method in path} == {
         "get",

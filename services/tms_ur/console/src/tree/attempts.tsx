@@ -40,10 +40,10 @@ function Try({ attempt, now, journal }: { attempt: Attempt; now: number; journal
   const { t } = useTranslation();
   const { begin, end, state } = attempt;
   const reason = state === "failure" ? said(journal.events[attempt.event]?.reason) : "";
+  const word = state === "idle" ? "halted" : WORDS[state];
   return (
     <li>
-      {clock(new Date(begin).toISOString())} {duration(Math.max(0, (end ?? now) - begin) / 1000)}{" "}
-      {t(state === "idle" ? "halted" : WORDS[state])}
+      {clock(new Date(begin).toISOString())} {duration(Math.max(0, (end ?? now) - begin) / 1000)} {t(word)}
       {reason && <div>{reason}</div>}
     </li>
   );
