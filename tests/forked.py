@@ -27,6 +27,15 @@ def be_process(words: tuple[str, ...], env: dict[str, str], out: Path, err: Path
     exec_entry([sys.executable, "-m", MODULE, *words], env, os.getppid())
 
 
+def be_patient_console(words: tuple[str, ...], env: dict[str, str], out: Path, err: Path) -> None:
+    """Be a console that closes nothing for the time that it hangs."""
+    from tms_ur import connections, server
+
+    for module in (connections, server):
+        module.HEADERS = module.SILENCE = 600.0  # type: ignore[attr-defined]
+    be_process(words, env, out, err)
+
+
 def _write_to(out: Path, err: Path) -> None:
     for number, path in ((1, out), (2, err)):
         file = os.open(path, os.O_WRONLY | os.O_APPEND)

@@ -28,12 +28,12 @@ LARGEST = 150_000  # bytes of a picture
 LIMIT = 60.0  # s for whatever must happen at all
 RUN_LIMIT = 600.0  # s for the run to end
 LOCALES = {"": "en-GB", ".ja": "ja-JP"}  # of the browser, by what the file's name ends with
-JAPANESE = {"board", "tree", "site"}  # pages, those of README.ja.md
+JAPANESE = {"board", "tree", "map"}  # pages, those of README.ja.md
 # What a page must show before its picture is taken; one that is not named here has a heading.
 SHOWN = {
     "board": ("#list_active li", "#list_tasks li", "#list_machines .card"),
     "tree": ("#tree_box [data-state=running]",),
-    "site": ("#map [data-machine]", "#arms svg"),
+    "map": ("#map_box [data-machine]", "#arms svg"),
     "history": ("#list_history tr", "#past [data-path]"),
     "data": ("#list_records tr", "#list_sensing tr"),
     "system": ("#list_processes tr",),

@@ -72,9 +72,9 @@ class Program:
         self._process.kill()
 
 
-def process(name: str, env: dict[str, str], log: Path) -> Program:
+def process(name: str, env: dict[str, str], log: Path, become: Callable[..., None] = forked.be_process) -> Program:
     """Start the process of a mesh that is named so."""
-    return Program(forked.be_process, (name,), env, log, log)
+    return Program(become, (name,), env, log, log)
 
 
 @contextmanager

@@ -45,6 +45,7 @@ class NothingUsable(Reason, text="other areas cover every unmanned one: no machi
 # people and vehicles
 class TrackerTypeWrong(Reason, text="a tracker of the kind {kind} sends one of {types}", action=EDIT_CONFIG):
     kind: str; types: tuple[str, ...]
+class TopicOrRecord(Reason, text="a tracker tells by a topic or by a record: one of the two", action=EDIT_CONFIG): pass
 class NoTracker(Reason, text="sensing.yaml has no tracker {name}; it has {known}", action=EDIT_CONFIG):
     name: str; known: tuple[str, ...]
 class GateNeedsArea(Reason, text="a gate names the unmanned areas that it leads to", action=EDIT_CONFIG): pass
@@ -67,6 +68,8 @@ class TrackerUnheard(Reason, text="{tracker} has not told yet whether somebody i
 class TrackerUnreadable(Reason, text="{tracker} tells what cannot be used ({why}): somebody may be inside",
     action=SEE_TRACKER): tracker: str; why: Reason
 class NotInMapFrame(Reason, text="its places are in the frame '{frame}', not in map"): frame: str
+class PlacesUneven(Reason, text="its record needs x and y, numbers or arrays of one length"): pass
+class NoSwitch(Reason, text="its record needs `opened`, true or false"): pass
 class PlaceNoNumber(Reason, text="a place is not a number"): pass
 class ManyIntruders(Reason, text="it tells {count} places, {limit} are allowed"): count: int; limit: int
 class TrackerClockAhead(Reason, text="its stamp is {ahead} ahead of the clock of this PC"): ahead: Seconds

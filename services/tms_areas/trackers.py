@@ -5,7 +5,7 @@ from typing import Literal
 
 from pydantic import Field, model_validator
 
-from tms_areas.reasons import GateNeedsArea, TrackerOfNoArea, TrackersNeedAreas, TrackerTypeWrong
+from tms_areas.reasons import GateNeedsArea, TopicOrRecord, TrackerOfNoArea, TrackersNeedAreas, TrackerTypeWrong
 from tms_config.models import Settings
 from tms_reason.reason import Reason
 from tms_reason.validation import Wrong
@@ -22,14 +22,17 @@ SPEED: dict[Kind, float] = {"person": 1.6, "vehicle": 5.6, "gate": 0.0}
 
 
 class Tracker(Settings):
-    """One topic that tells who is where, in the frame `map`; an empty array says that nobody is seen.
+    """One topic, or record, that tells who is where, in the frame `map`; an empty array says that nobody is seen.
 
-    It must not tell the site's own machines. A message with a stamp must not be older than `silent_after` either.
+    It must not tell the site's own machines. What has a time of measurement must not be older than `silent_after`.
     """
 
     kind: Kind
-    topic: str = Field(pattern=r"^/?[A-Za-z][A-Za-z0-9_/]*$")
+    topic: str = Field(default="", pattern=r"^(/?[A-Za-z][A-Za-z0-9_/]*)?$")
     type: str = POINTS[0]
+    # Instead of a topic: fields `x` and `y` [m], numbers or arrays of one length; of a gate: `opened`, a bool.
+    record: str = ""
+    model: str = ""  # of the record; "" = one that all machines share
     reliability: Literal["reliable", "best_effort"] = "reliable"
     silent_after: float = Field(gt=0, le=60, default=1.0)  # s without a message after which it is silent
     # A silent tracker counts as a person inside (stop), holds machines until it is heard again, or is told only.
@@ -40,8 +43,10 @@ class Tracker(Settings):
 
     @model_validator(mode="after")
     def _fits(self) -> "Tracker":
+        if bool(self.topic) == bool(self.record):
+            raise Wrong(TopicOrRecord(), "topic")
         types = (SWITCH,) if self.kind == "gate" else POINTS
-        if self.type not in types:
+        if self.topic and self.type not in types:
             raise Wrong(TrackerTypeWrong(self.kind, types), "type")
         if self.kind == "gate" and not self.areas:
             raise Wrong(GateNeedsArea(), "areas")

@@ -62,12 +62,16 @@ class PlaceServices:
             else:
                 keeper.free(request.machine, request.run, request.places)
 
-        self._answer(response, lambda: self._change(act))
+        def answer() -> None:
+            self._change(act)
+            response.revision = self._read().book.revision
+
+        self._answer(response, answer)
         return response
 
     def report(self, request: ReportPlaces.Request, response: ReportPlaces.Response) -> ReportPlaces.Response:
         told = Report(request.machine, request.number, frozenset(request.places), frozenset(request.inside),
-                      request.sure, frozenset(request.in_use))  # fmt: skip
+                      request.sure, frozenset(request.in_use), request.revision)  # fmt: skip
 
         def answer() -> None:
             try:
@@ -79,7 +83,7 @@ class PlaceServices:
                 leases = self._read().leases(request.machine)
             response.lease = LEASE
             response.held, response.leaving = sorted(leases.held), sorted(leases.leaving)
-            response.revoked = sorted(leases.revoked)
+            response.revoked, response.revision = sorted(leases.revoked), leases.revision
 
         self._answer(response, answer)
         return response
@@ -158,7 +162,9 @@ class PlaceServices:
 def _message(keeper: Keeper, now: float) -> Places:
     names = sorted({*keeper.book.places, *keeper.book.claims})
     return Places(
-        places=[_place(keeper, name, now) for name in names], alarms=[to_line(alarm) for alarm in alarms(keeper)]
+        revision=keeper.book.revision,
+        places=[_place(keeper, name, now) for name in names],
+        alarms=[to_line(alarm) for alarm in alarms(keeper)],
     )
 
 

@@ -31,7 +31,7 @@ def holding(
     """
     request = AskPlaces.Request(machine=machine, places=list(places), hold=True)
     try:
-        _ask(ros, request, lambda: waits(WaitsForKeeper(machine, places[0])))
+        site.answered(_ask(ros, request, lambda: waits(WaitsForKeeper(machine, places[0]))))
         while (why := next(filter(None, (site.waits(machine, place) for place in places)), None)) is not None:
             waits(why)
             sleep(LOOK)
@@ -40,12 +40,11 @@ def holding(
         ros.call_unanswered(AskPlaces, ASK, AskPlaces.Request(machine=machine, hold=False))
 
 
-def _ask(ros: Ros, request: AskPlaces.Request, waits: Callable[[], None]) -> None:
-    """Until the keeper has taken it."""
+def _ask(ros: Ros, request: AskPlaces.Request, waits: Callable[[], None]) -> int:
+    """Until the keeper has taken it; the revision of its book then."""
     while True:
         try:
-            ask(ros, AskPlaces, ASK, request, ASK_LIMIT)
-            return
+            return ask(ros, AskPlaces, ASK, request, ASK_LIMIT).revision
         except RosError:
             until = monotonic() + ASK_AGAIN
             while monotonic() < until:

@@ -18,6 +18,7 @@ class SitePlaces:
     def __init__(self, ros: Ros, changed: Callable[[], None] = lambda: None) -> None:
         """`changed` is called on the executor thread."""
         self._told: dict[str, Place] | None = None  # replaced, never changed
+        self._revision = self._since = 0  # of what was told; of the last answer, which older news does not know
         self._changed = changed
         ros.subscribe(Places, "/tms/places", self._heard, latched=True)
 
@@ -26,9 +27,15 @@ class SitePlaces:
         """The places of the site; None while nobody has told of them."""
         return None if self._told is None else tuple(self._told)
 
+    def answered(self, revision: int) -> None:
+        """The keeper has taken what was asked: only what it tells from now on counts."""
+        self._since = revision
+
     def waits(self, machine: str, place: str) -> Reason | None:
         """Why a machine that wants a place must not go there yet; None: its gateway lets it in."""
         told = (self._told or {}).get(place)
+        if self._revision < self._since:
+            return WaitsForKeeper(machine, place)
         queue = [] if told is None else [one.machine for one in told.queue]
         if told is not None and told.holder == machine:
             if told.state == Place.HELD:
@@ -43,6 +50,7 @@ class SitePlaces:
         return WaitsItsTurn(machine, place, ahead[0]) if ahead else WaitsForLease(machine, place)
 
     def _heard(self, told: Places) -> None:
+        self._revision = told.revision
         self._told = {one.name: one for one in told.places}
         self._changed()
 

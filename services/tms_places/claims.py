@@ -12,8 +12,9 @@ class Claim:
     machine: str
     wants: frozenset[str]  # runs that want it for the machine; "" is the machine itself, for a goal; none: it leaves
     since: float  # s since 1970
-    confirmed: bool = False  # its gateway lets the lease count
+    confirmed: bool = False  # its gateway lets the lease count, and knows of `granted`
     revoked: str = ""  # by whom
+    granted: int = 0  # revision of the book from which on some run has wanted it all the time
 
     @property
     def leaving(self) -> bool:
@@ -39,6 +40,7 @@ class Book:
     claims: Mapping[str, Claim] = field(default_factory=dict)  # by place
     queue: tuple[Request, ...] = ()  # in the order of arrival
     inside: Mapping[str, tuple[str, ...]] = field(default_factory=dict)  # places where a machine is, or was seen last
+    revision: int = 0  # larger after every claim that changed: of two news, the older one tells nothing
 
     def held(self, machine: str) -> dict[str, Claim]:
         """The places of a machine."""
@@ -47,7 +49,8 @@ class Book:
     def with_claim(self, place: str, claim: Claim | None) -> "Book":
         """The same with another claim, or none, on a place."""
         rest = {name: one for name, one in self.claims.items() if name != place}
-        return replace(self, claims=rest if claim is None else {**rest, place: claim})
+        claims = rest if claim is None else {**rest, place: claim}
+        return replace(self, claims=claims, revision=self.revision + 1)
 
     def others_inside(self, place: str, machine: str) -> list[str]:
         """Other machines that are in a place, or were seen last there."""
@@ -62,6 +65,7 @@ def to_document(book: Book) -> dict[str, Any]:
             "machine": one.machine,
             "wants": sorted(one.wants),
             "since": one.since,
+            "granted": one.granted,
             "confirmed": one.confirmed,
             "revoked": one.revoked,
         }
@@ -69,7 +73,9 @@ def to_document(book: Book) -> dict[str, Any]:
     ]
     queue = [{**vars(one), "places": list(one.places)} for one in book.queue]
     inside = {machine: list(places) for machine, places in sorted(book.inside.items()) if places}
-    return {"places": list(book.places), "claims": claims, "queue": queue, "inside": inside}
+    return {
+        "places": list(book.places), "claims": claims, "queue": queue, "inside": inside, "revision": book.revision,
+    }  # fmt: skip
 
 
 def of_document(found: Mapping[str, Any]) -> Book:
@@ -81,7 +87,7 @@ def of_document(found: Mapping[str, Any]) -> Book:
     claims = {
         str(one["place"]): Claim(
             str(one["machine"]), frozenset(map(str, one["wants"])), float(one["since"]), bool(one["confirmed"]),
-            str(one["revoked"]),
+            str(one["revoked"]), int(one["granted"]),
         )
         for one in found["claims"]
     }  # fmt: skip
@@ -90,4 +96,4 @@ def of_document(found: Mapping[str, Any]) -> Book:
         for one in found["queue"]
     )
     inside = {str(machine): tuple(map(str, places)) for machine, places in found["inside"].items()}
-    return Book(tuple(map(str, found["places"])), claims, queue, inside)
+    return Book(tuple(map(str, found["places"])), claims, queue, inside, int(found["revision"]))

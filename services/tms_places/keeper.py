@@ -7,7 +7,7 @@ some gateway may still rely on what an earlier keeper told it.
 """
 
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from tms_places.claims import Book, Claim, Request
 from tms_places.reasons import NoPlace, PlaceFree
@@ -28,6 +28,7 @@ class Report:
     inside: frozenset[str]  # where its footprint is, or was last
     sure: bool  # its pose is fresh and believed
     using: frozenset[str]  # leases that it lets count
+    revision: int = 0  # the newest of the book that it knows
 
 
 @dataclass(frozen=True)
@@ -37,6 +38,7 @@ class Leases:
     held: frozenset[str] = frozenset()
     leaving: frozenset[str] = frozenset()
     revoked: frozenset[str] = frozenset()
+    revision: int = field(default=0, compare=False)  # of the book, as it was then
 
 
 class Keeper:
@@ -107,7 +109,7 @@ class Keeper:
         for place in report.using | report.inside:
             self._take(place, report.machine, unix)
         for place, claim in self.book.held(report.machine).items():
-            if place in report.using and not claim.confirmed:
+            if place in report.using and not claim.confirmed and report.revision >= claim.granted:
                 self.book = self.book.with_claim(place, replace(claim, confirmed=True))
             elif place not in report.using and place not in report.inside and report.sure and claim.leaving:
                 self._freed(place, claim, unix)
@@ -131,7 +133,7 @@ class Keeper:
         held = self.book.held(machine)
         revoked = frozenset(place for place, one in held.items() if one.revoked)
         leaving = frozenset(place for place, one in held.items() if one.leaving) - revoked
-        return Leases(frozenset(held) - leaving - revoked, leaving, revoked)
+        return Leases(frozenset(held) - leaving - revoked, leaving, revoked, self.book.revision)
 
     # grants
 
@@ -150,9 +152,15 @@ class Keeper:
                 waiting.append(one)
                 continue
             for place in one.places:
-                claim = self.book.claims.get(place) or Claim(one.machine, frozenset(), unix)
-                self.book = self.book.with_claim(place, replace(claim, wants=claim.wants | {one.run}))
+                self._want(place, one, unix)
         self.book = replace(self.book, queue=tuple(waiting))
+
+    def _want(self, place: str, one: Request, unix: float) -> None:
+        """Give a place to a machine, or keep one for it that it was about to leave, which its gateway must know."""
+        claim = self.book.claims.get(place) or Claim(one.machine, frozenset(), unix)
+        if not claim.wants:
+            claim = replace(claim, granted=self.book.revision + 1, confirmed=False)
+        self.book = self.book.with_claim(place, replace(claim, wants=claim.wants | {one.run}))
 
     def _open(self, place: str, machine: str) -> bool:
         return place not in self.book.claims and not self.book.others_inside(place, machine)

@@ -22,22 +22,30 @@ class OwnLeases:
     until: dict[str, float] = field(default_factory=dict)  # when the lease of a place in use ends
     leaving: frozenset[str] = frozenset()
     revoked: frozenset[str] = frozenset()
+    revision: int = 0  # the newest of the keeper's book that was heard
     number: int = 0  # of the last report
     sent: float = 0.0
 
     def report(self, number: int, places: Iterable[str], inside: frozenset[str], sure: bool, now: float) -> Report:
         """What to tell the keeper now; `number`: of nanoseconds since 1970, so it is larger after a restart, too."""
         self.number, self.sent = max(number, self.number + 1), now
-        return Report(self.machine, self.number, frozenset(places), inside, sure, frozenset(self.until))
+        return Report(self.machine, self.number, frozenset(places), inside, sure, frozenset(self.until), self.revision)
 
     def answered(self, number: int, told: Leases, inside: frozenset[str], lease: float = LEASE) -> None:
         """The keeper's answer to a report."""
         if number != self.number:
             return
+        self.revision = told.revision
         keeps = told.held | (told.leaving & (self.until.keys() | inside))
         keeps |= told.revoked & self.evacuates & inside
         self.leaving, self.revoked = told.leaving, told.revoked
         self.until = {place: self.sent + lease for place in keeps}
+
+    def heard(self, mine: Iterable[str], leaving: frozenset[str], revision: int) -> None:
+        """What the keeper tells all: its places, and those that nobody wants for it; older news is none."""
+        if revision >= self.revision:
+            self.revision = revision
+            self.leaving = (self.leaving | leaving) - (frozenset(mine) - leaving)
 
     def give_back(self, inside: frozenset[str], sure: bool, drives: bool) -> None:
         """Let those count no more that nobody wants, once the machine is outside and does not drive."""

@@ -118,7 +118,7 @@ class PlaceWatch:
         left = frozenset(name for name, state in mine.items() if state == Place.LEAVING)
         with self._lock:
             news = left - self._own.leaving or any(state in (Place.GRANTED, Place.REVOKED) for state in mine.values())
-            self._own.leaving = (self._own.leaving | left) - (mine.keys() - left)
+            self._own.heard(mine, left, told.revision)
             if news or mine.keys() != self._own.open:
                 self._due = 0.0
 
@@ -132,7 +132,7 @@ class PlaceWatch:
             self._due = now + PERIOD
         request = ReportPlaces.Request(
             machine=report.machine, number=report.number, places=sorted(report.places), inside=sorted(report.inside),
-            sure=report.sure, in_use=sorted(report.using),
+            sure=report.sure, in_use=sorted(report.using), revision=report.revision,
         )  # fmt: skip
         try:
             answer = ask(self._app.ros, ReportPlaces, "/tms/places/report", request, LIMIT)
@@ -142,7 +142,7 @@ class PlaceWatch:
             self._silent, self._due = True, now + AGAIN
             return
         self._silent = False
-        told = Leases(frozenset(answer.held), frozenset(answer.leaving), frozenset(answer.revoked))
+        told = Leases(frozenset(answer.held), frozenset(answer.leaving), frozenset(answer.revoked), answer.revision)
         with self._lock:
             self._own.answered(report.number, told, self._inside, answer.lease)
             if self._own.open != report.using:

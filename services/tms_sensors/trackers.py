@@ -1,4 +1,7 @@
-"""Hears the trackers of a site, directly: no other process is between their topics and a gateway."""
+"""Hears the trackers of a site, directly: no other process is between their topics and a gateway.
+
+Of those that tell in a record, the database is asked. One that does not answer makes them silent.
+"""
 
 import math
 from collections.abc import Callable, Mapping
@@ -9,7 +12,7 @@ from std_msgs.msg import Bool
 
 from tms_areas.areas import Point
 from tms_areas.intruders import Intruders
-from tms_areas.reasons import ManyIntruders, NotInMapFrame, PlaceNoNumber, TrackerClockAhead
+from tms_areas.reasons import ManyIntruders, NotInMapFrame, PlaceNoNumber
 from tms_areas.trackers import Tracker
 from tms_config.clock import monotonic, unix_time
 from tms_machine import stamps
@@ -17,12 +20,12 @@ from tms_machine.frames import MAP
 from tms_reason.errors import TmsError
 from tms_ros.node import Ros
 from tms_ros.topics import Arrival
+from tms_sensors.tracker_records import Told, TrackerRecords, age_since
 
 TYPES = {"geometry_msgs/msg/PoseArray": PoseArray, "geometry_msgs/msg/PoseStamped": PoseStamped,
          "geometry_msgs/msg/PointStamped": PointStamped, "std_msgs/msg/Bool": Bool}  # fmt: skip
 DEPTH = 50  # messages that may come between two looks: that a gate was open for a moment must not be lost
 MOST = 500  # places in a message; more are a mistake, and would take their time
-AHEAD = 0.5  # s that the clock of a tracker may be ahead of ours
 
 
 class Hearing:
@@ -30,13 +33,16 @@ class Hearing:
 
     def __init__(self, ros: Ros, trackers: Mapping[str, Tracker]) -> None:
         self.intruders = Intruders(trackers, monotonic())
-        self._inputs = {name: _arrivals(ros, given) for name, given in trackers.items()}
+        self._inputs = {name: _arrivals(ros, given) for name, given in trackers.items() if given.topic}
+        self._records = TrackerRecords(ros, {name: given for name, given in trackers.items() if given.record})
 
     def take(self) -> Intruders:
         """Take what has come since the last call."""
         for name, take_new in self._inputs.items():
             for arrival in take_new():
                 self._take(name, arrival)
+        for told in self._records.take():
+            self._take_record(told)
         return self.intruders
 
     def _take(self, name: str, arrival: Arrival[Any]) -> None:
@@ -49,6 +55,16 @@ class Hearing:
         except TmsError as error:
             self.intruders.unreadable(name, error.reason)
 
+    def _take_record(self, told: Told) -> None:
+        try:
+            measured = told.received - told.age()
+            if self.intruders.told[told.tracker].given.kind == "gate":
+                self.intruders.gate(told.tracker, measured, told.opened())
+            else:
+                self.intruders.seen(told.tracker, measured, checked(told.places()))
+        except TmsError as error:
+            self.intruders.unreadable(told.tracker, error.reason)
+
 
 def age_of(message: PoseArray | PoseStamped | PointStamped, now: float) -> float:
     """How long before its arrival it was measured [s]; 0 without a stamp. `now`: s since 1970.
@@ -56,10 +72,7 @@ def age_of(message: PoseArray | PoseStamped | PointStamped, now: float) -> float
     Raises:
         TmsError: it was measured later than now.
     """
-    stamp = stamps.seconds(message.header.stamp)
-    if stamp - now > AHEAD:
-        raise TmsError(TrackerClockAhead(stamp - now))
-    return max(0.0, now - stamp) if stamp else 0.0
+    return age_since(stamps.seconds(message.header.stamp), now)
 
 
 def places_of(message: PoseArray | PoseStamped | PointStamped) -> list[Point]:
@@ -71,15 +84,22 @@ def places_of(message: PoseArray | PoseStamped | PointStamped) -> list[Point]:
     if message.header.frame_id != MAP:
         raise TmsError(NotInMapFrame(message.header.frame_id))
     if isinstance(message, PoseArray):
-        if len(message.poses) > MOST:
-            raise TmsError(ManyIntruders(len(message.poses), MOST))
-        found = [(one.position.x, one.position.y) for one in message.poses]
-    else:
-        at = message.pose.position if isinstance(message, PoseStamped) else message.point
-        found = [(at.x, at.y)]
-    if not all(math.isfinite(number) for place in found for number in place):
+        return checked([(one.position.x, one.position.y) for one in message.poses])
+    at = message.pose.position if isinstance(message, PoseStamped) else message.point
+    return checked([(at.x, at.y)])
+
+
+def checked(places: list[Point]) -> list[Point]:
+    """The same places.
+
+    Raises:
+        TmsError: one is not a number, or there are more than MOST.
+    """
+    if len(places) > MOST:
+        raise TmsError(ManyIntruders(len(places), MOST))
+    if not all(math.isfinite(number) for place in places for number in place):
         raise TmsError(PlaceNoNumber())
-    return found
+    return places
 
 
 def _arrivals(ros: Ros, given: Tracker) -> Callable[[], list[Arrival[Any]]]:

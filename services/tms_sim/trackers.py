@@ -32,7 +32,8 @@ def start(app: App) -> None:
     Raises:
         ConfigError: sensing.yaml does not have one of them.
     """
-    known, given = load_sensing(app.site).trackers, app.site.file.sim.trackers
+    known = {name: one for name, one in load_sensing(app.site).trackers.items() if one.topic}
+    given = app.site.file.sim.trackers
     for name in given:
         if name not in known:
             raise ConfigError(located(app.site.path, NoTracker(name, tuple(known)), "sim", "trackers", name))

@@ -65,7 +65,7 @@ class PlaceRequests:
         """Why the keeper refuses a request; it is asked until it answers."""
         while not self._app.stopping.is_set():
             try:
-                ask(self._app.ros, AskPlaces, ASK, request, ASK_LIMIT)
+                self.site.answered(ask(self._app.ros, AskPlaces, ASK, request, ASK_LIMIT).revision)
                 return None
             except RosError as error:
                 if error.reason.find(NoPlace) is not None:

@@ -199,40 +199,6 @@ class Receipt(Model):
     latched: bool = Field(description="nothing moves until it is re-armed")
 
 
-class Box(Model):
-    """Corners of a box."""
-
-    min: list[float] = Field(description="m")
-    max: list[float] = Field(description="m")
-
-
-class Link(Model):
-    """A joint of an arm, as its side view needs it."""
-
-    joint: str
-    x: float = Field(description="m, on the parent link")
-    z: float = Field(description="m, on the parent link")
-    pitch: float = Field(description="rad, at joint angle 0")
-
-
-class SiteMachine(Model):
-    """A machine of the site and its body."""
-
-    name: str
-    model: str
-    kind: str
-    footprint: list[Box] = Field(description="in its base frame")
-    arm: list[Link] = Field(description="from the turning body to the tool, empty if it has no arm")
-
-
-class SiteInfo(Model):
-    """What does not change while the console runs."""
-
-    name: str
-    backend: str
-    machines: list[SiteMachine]
-
-
 class Finding(Model):
     """Something that the check found."""
 

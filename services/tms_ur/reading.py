@@ -15,20 +15,18 @@ from tms_reason.names import Name
 from tms_reason.reason import Reason
 from tms_ur import export
 from tms_ur.audit_chain import RUN as AUDIT
+from tms_ur.body_models import SiteInfo, site_info
 from tms_ur.command_models import Xml
 from tms_ur.data_models import Change, Record, Sensing
+from tms_ur.ground_models import Ground
 from tms_ur.models import (
     INT32,
-    Box,
     Checked,
     Diff,
     Event,
     Finding,
-    Link,
     Log,
     Run,
-    SiteInfo,
-    SiteMachine,
     Task,
     TaskText,
     Template,
@@ -73,7 +71,7 @@ def add(app: FastAPI, client: "SiteClient", audit: "Audit", site: Site) -> None:
 
 def _live(app: FastAPI, client: "SiteClient", site: Site) -> None:
     stream = Stream(client.board)
-    shown = _site(site)
+    shown = site_info(site)
 
     # `async` where the endpoint waits for nothing, so that it answers even when all workers wait for a module
     @app.get("/api/state", summary="Machines, active runs, questions and processes as they are now")
@@ -81,7 +79,7 @@ def _live(app: FastAPI, client: "SiteClient", site: Site) -> None:
         return client.board.snapshot()
 
     @app.get("/api/site", summary="The site's machines and their bodies")
-    async def site_info() -> SiteInfo:
+    async def site_bodies() -> SiteInfo:
         return shown
 
     @app.get("/api/places", summary="Shared places: who holds them, since when, and who waits")
@@ -209,6 +207,14 @@ def _scenes(app: FastAPI, client: "SiteClient", site: Site) -> None:
     def areas() -> EnabledAreas:
         return client.watching.areas()
 
+    @app.get(
+        "/api/ground", summary="Heights of the ground and of the design, of the whole site", responses=problems(503)
+    )
+    def ground(
+        cells: Annotated[int, Query(ge=100, le=200_000, description="about how many at most")] = 40_000,
+    ) -> Ground:
+        return Ground() if site.file.ground is None else client.ground(cells)
+
     @app.get("/api/machines/{name}/scene", summary="What the planner of an excavator plans among now",
              responses=problems(404, 409, 503))  # fmt: skip
     def scene(name: MachineName) -> Scene:
@@ -271,28 +277,3 @@ def _line(reason: Reason) -> int | None:
     line = reason.args.get("line")
     inner = (one for one in reason.args.values() if isinstance(one, Reason))
     return line if isinstance(line, int) else next((found for one in inner if (found := _line(one)) is not None), None)
-
-
-def _site(site: Site) -> SiteInfo:
-    return SiteInfo(
-        name=site.name,
-        backend=site.file.backend,
-        machines=[
-            SiteMachine(
-                name=name, model=use.model, kind=site.models[use.model].kind, arm=_arm(site, name),
-                footprint=[Box(min=list(box.min), max=list(box.max))
-                           for box in site.models[use.model].footprint.values()],
-            )
-            for name, use in site.file.machines.items()
-        ],
-    )  # fmt: skip
-
-
-def _arm(site: Site, machine: str) -> list[Link]:
-    """The joints about y, from the body outwards: those that move in a side view."""
-    geometry = site.model_of(machine).geometry
-    return [
-        Link(joint=name, x=origin.xyz[0], z=origin.xyz[2], pitch=origin.pitch)
-        for name, origin in geometry.items()
-        if (origin.axis == "y" and origin.parent != "base_link") or name == "bucket_end_joint"
-    ]

@@ -39,6 +39,8 @@ from tms_ur.answers import checked
 from tms_ur.area_client import let_back
 from tms_ur.board import Board
 from tms_ur.data_models import Change, Record, Sensing
+from tms_ur.ground_client import ground
+from tms_ur.ground_models import Ground
 from tms_ur.models import AddedTemplate, Event, Host, Place, Rearmed, Receipt, Run, Task, TaskText, Template
 from tms_ur.place_client import PlaceClient
 from tms_ur.reason_view import of_error, of_line, view
@@ -210,6 +212,10 @@ class SiteClient(RunCalls):
             TmsError: something of it is not known, or the planner is away.
         """
         return scene(machine, self._ask(GetScene, f"/{machine}/rp/get_scene"))
+
+    def ground(self, cells: int) -> Ground:
+        """The ground of the site in about so many cells at most; a TmsError says why it is not told."""
+        return ground(self._ros, cells)
 
     # processes
 

@@ -13,7 +13,7 @@ from conftest import Mesh, wait_until
 from tms_ur.api import STATIC
 
 pytestmark = [pytest.mark.system, pytest.mark.browser]
-PAGES = ["board", "tree", *sorted(path.stem for path in (STATIC / "pages").glob("*.js"))]
+PAGES = sorted(set(re.findall(r'"p_(\w+)"', (STATIC / "words.js").read_text(encoding="utf-8"))))
 SWINGS = 3  # number of the task of long swings to and fro
 FIRST_PAGE = 150_000  # bytes, compressed
 TARGET = 44  # px
@@ -448,8 +448,8 @@ def test_processes_logs_and_restart(page: Page, address: str, mesh: Mesh) -> Non
 
 
 def test_the_site_shows_place_and_arm(page: Page, address: str, mesh: Mesh) -> None:
-    open_page(page, address, "site")
-    expect(page.locator("#map [data-machine=zx200]")).to_have_count(1)
+    open_page(page, address, "map")
+    expect(page.locator("#map_box [data-machine=zx200]")).to_have_count(1)
     expect(page.locator("#arms svg")).to_have_count(1)
     points = page.locator("#arms .arm").get_attribute("points")
     assert points

@@ -35,7 +35,7 @@ def test_a_run_that_is_stopped(page: Page, address: str, idle: Mesh) -> None:
     page.locator("#language").click()
     run = ask(address, "/api/runs", {"task_id": SWINGS})["run_id"]
     wait_until(lambda: ask(address, "/api/state")["machines"][0]["state"] == "moving", 60, "zx200 moves")
-    for name in ("board", "tree", "site"):
+    for name in ("board", "tree", "map"):
         open_page(page, address, name)
         expect(page.locator("html")).to_have_attribute("lang", "ja")
         assert foreign(page, address) == [], name

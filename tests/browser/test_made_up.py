@@ -122,8 +122,8 @@ def test_a_field_of_a_run_that_nobody_has_translated_is_shown(page: Page, addres
 
 def test_an_old_place_is_marked(page: Page, address: str, yard: Yard) -> None:
     yard.board.put_place("ic120", Place(x=1.0, y=2.0, yaw=0.0))
-    page.goto(f"{address}/#site")
-    mark = page.locator("#map [data-machine=ic120]")
+    page.goto(f"{address}/#map")
+    mark = page.locator("#map_box [data-machine=ic120]")
     expect(mark).to_have_attribute("class", "machine standing")
     expect(page.locator("#unplaced li")).to_have_text(["zx200: no position has been heard."])
     yard.now += 7
@@ -197,14 +197,32 @@ def test_nodes_of_a_template_are_marked_in_the_history(page: Page, address: str,
     """Whose journal names the template, too."""
     journal_of_template(yard)
     page.goto(f"{address}/#history/r-1")
-    marked = page.locator("#past [data-path]").filter(has=page.locator("rect.template"))
+    marked = page.locator("#past [data-path]").filter(has=page.locator(".from_template"))
     expect(page.locator("#past [data-path]")).to_have_count(3)
-    expect(marked).to_have_count(1)
     expect(marked).to_have_attribute("data-path", "0.1")
-    expect(marked.locator("title")).to_contain_text("(template Dig:3)")
+    expect(marked).to_have_attribute("title", re.compile(r"\(template Dig:3\)"))
     expect(page.locator("#list_events tr").first.locator("[data-part=node]")).to_have_text("0.1 (template Dig:3)")
     page.locator("#language").click()
-    expect(marked.locator("title")).to_contain_text("(テンプレート Dig:3)")
+    expect(marked).to_have_attribute("title", re.compile(r"\(テンプレート Dig:3\)"))
+
+
+def test_the_cursor_of_a_run_goes_by_time(page: Page, address: str, yard: Yard) -> None:
+    """The address of a moment opens it; what is clicked on in the journal is gone to."""
+    change = {"kind": "node", "node": "0.1"}
+    later = [NOON + timedelta(seconds=seconds) for seconds in (0, 10, 30)]
+    yard.journals = {"r-1": [
+        event(1, "tree", **WITH_TEMPLATE),
+        Event(number=2, stamp=later[1], text="called IDLE -> RUNNING", **change),
+        Event(number=3, stamp=later[2], text="called RUNNING -> SUCCESS", **change),
+    ]}  # fmt: skip
+    page.goto(f"{address}/#history/r-1/12.5")
+    node = page.locator("#past [data-path='0.1']")
+    expect(node).to_have_attribute("data-state", "running")
+    page.locator("#slider").fill("300")  # tenths of a second
+    expect(node).to_have_attribute("data-state", "success")
+    page.locator("#list_events tr", has_text="IDLE -> RUNNING").get_by_role("button").click()
+    expect(node).to_have_attribute("data-state", "running")
+    expect(page.get_by_role("link", name="Link to this moment")).to_have_attribute("href", "#history/r-1/10.0")
 
 
 def test_a_file_is_stored_as_a_template_under_its_name(page: Page, address: str, yard: Yard) -> None:

@@ -20,12 +20,12 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Site]:
 
 def test_a_walking_person_stops_the_area_in_the_live_picture(site: Site, page: Page) -> None:
     drive = site.drive()
-    page.goto(f"http://127.0.0.1:{load_site().file.ports.console}/#site")
-    expect(page.locator("#map [data-area=yard]")).to_have_class(re.compile("unmanned"))
-    expect(page.locator("#map .seen.person")).to_have_count(1)
-    expect(page.locator("#map .lamp")).to_have_class(re.compile("automatic"))
+    page.goto(f"http://127.0.0.1:{load_site().file.ports.console}/#map")
+    expect(page.locator("#map_box [data-area=yard]")).to_have_class(re.compile("unmanned"))
+    expect(page.locator("#map_box .seen.person")).to_have_count(1)
+    expect(page.locator("#map_box .lamp")).to_have_class(re.compile("automatic"))
     expect(page.locator("#watched")).to_contain_text("emergency stop: off")
     site.be(eye=WALK)
-    expect(page.locator("#map .lamp")).to_have_class(re.compile("stopped"))
+    expect(page.locator("#map_box .lamp")).to_have_class(re.compile("stopped"))
     site.stopped(drive, "INTRUDER_INSIDE")
     expect(page.locator("#watched")).to_contain_text(f"{MACHINE}: a person is in the unmanned area yard")

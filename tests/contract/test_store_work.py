@@ -37,7 +37,7 @@ from tms_work.cycle import Cycle
 from tms_work.reasons import EndsBeforeBegin
 
 FLAT = Heights(-1.5, 2.0, 0.5, np.zeros((20, 40)))
-DAY = datetime(2026, 11, 26).astimezone()
+DAY = datetime(2025, 11, 26).astimezone()
 
 
 def cycle(number: int, hour: float, **more: Any) -> Cycle:
@@ -273,7 +273,7 @@ def test_diff_tells_where_and_draws_it(tms: Callable[..., Result], shared_db: st
 def test_work_by_machine_hour_and_day(tms: Callable[..., Result], shared_db: store.Db) -> None:
     assert "no work" in tms(work.command).stderr
     Cycles(shared_db).write([cycle(1, 9), cycle(2, 9.5), cycle(3, 10.2), haul(1, 10), cycle(4, 25)])
-    found = json.loads(tms(work.command, "--day", "2026-11-26", "--json").stdout)
+    found = json.loads(tms(work.command, "--day", "2025-11-26", "--json").stdout)
     assert list(found["groups"]) == ["ic120_1", "zx200"]
     assert found["total"]["bank_m3"] == pytest.approx(1.5) and found["total"]["truck_loads"] == 1
     assert found["total"]["bank_m3_per_hour"] == pytest.approx(45.0)
@@ -282,7 +282,7 @@ def test_work_by_machine_hour_and_day(tms: Callable[..., Result], shared_db: sto
     text = tms(work.command, "--by", "day", "--csv").stdout
     assert tms(work.command, "--run", "none", "--by", "day", "--csv").stdout == text.splitlines(keepends=True)[0]
     rows = list(csv.DictReader(io.StringIO(text)))
-    assert [row["day"] for row in rows] == ["2026-11-26", "2026-11-27"] and float(rows[0]["dig_dig_s"]) == 45.0
+    assert [row["day"] for row in rows] == ["2025-11-26", "2025-11-27"] and float(rows[0]["dig_dig_s"]) == 45.0
     table = tms(work.command, "--run", "run-1").stdout.splitlines()
     assert [line.split()[:3] for line in table[1:]] == [
         ["ic120_1", "0", "0.00"],
@@ -295,19 +295,19 @@ def test_work_by_machine_hour_and_day(tms: Callable[..., Result], shared_db: sto
 
 def test_the_daily_report(tms: Callable[..., Result], shared_db: store.Db, tmp_path: Path) -> None:
     Cycles(shared_db).write([cycle(1, 9), cycle(2, 9.5), cycle(3, 12.2), haul(1, 10)])
-    done = tms(report.command, "--day", "2026-11-26")
+    done = tms(report.command, "--day", "2025-11-26")
     assert done.exit_code == 0, done.exception
-    assert done.stdout == "daily-report-2026-11-26.html: 3 cycles, 1.5 m³ bank, 1 truck loads\n"
-    text = (tmp_path / "daily-report-2026-11-26.html").read_text(encoding="utf-8")
+    assert done.stdout == "daily-report-2025-11-26.html: 3 cycles, 1.5 m³ bank, 1 truck loads\n"
+    text = (tmp_path / "daily-report-2025-11-26.html").read_text(encoding="utf-8")
     assert "<th>Soil dug, bank [m³]</th><td>10.0</td><td>1.5</td><td>15 %</td>" in text
     assert text.count("<svg") == 2 and "<img" not in text
-    assert "File exists" in str(tms(report.command, "--day", "2026-11-26").exception)
-    assert tms(report.command, "--day", "2026-11-26", "--output", "r.txt").exit_code == 2
-    again = tms(report.command, "--day", "2026-11-26", "--overwrite", "--language", "ja", "--json")
+    assert "File exists" in str(tms(report.command, "--day", "2025-11-26").exception)
+    assert tms(report.command, "--day", "2025-11-26", "--output", "r.txt").exit_code == 2
+    again = tms(report.command, "--day", "2025-11-26", "--overwrite", "--language", "ja", "--json")
     assert json.loads(again.stdout)["total"]["cycles"] == 3
-    text = (tmp_path / "daily-report-2026-11-26.html").read_text(encoding="utf-8")
+    text = (tmp_path / "daily-report-2025-11-26.html").read_text(encoding="utf-8")
     assert (
-        "作業日報 yard 2026-11-26" in text
+        "作業日報 yard 2025-11-26" in text
         and "ダンプ待ち" in text
         and not re.search(r"[a-z]{3,} [a-z]{3,}", prose(text))
     )

@@ -4,7 +4,7 @@ import json
 import os
 import urllib.error
 import urllib.request
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,6 +12,7 @@ from typing import Any
 
 import pytest
 
+import forked
 import programs
 from conftest import ports_of, wait_until
 from tms_config.config import Site, load_site
@@ -61,8 +62,8 @@ class Console:
             return False
 
 
-def spawn(site: Site, log: Path) -> programs.Program:
-    return programs.process("tms:ur", {**os.environ, **environment.environment(site)}, log)
+def spawn(site: Site, log: Path, become: Callable[..., None] = forked.be_process) -> programs.Program:
+    return programs.process("tms:ur", {**os.environ, **environment.environment(site)}, log, become)
 
 
 @contextmanager
@@ -81,9 +82,9 @@ def site_of_a_console(tmp_path: Path, domain: int) -> Iterator[Site]:
 
 
 @contextmanager
-def running(site: Site, tmp_path: Path) -> Iterator[Console]:
+def running(site: Site, tmp_path: Path, become: Callable[..., None] = forked.be_process) -> Iterator[Console]:
     """The console's process, up; it is killed afterwards."""
-    console = Console(site, spawn(site, tmp_path / "log.txt"), tmp_path / "log.txt")
+    console = Console(site, spawn(site, tmp_path / "log.txt", become), tmp_path / "log.txt")
     try:
         wait_until(console.ready, LIMIT, "/readyz 200")
         yield console

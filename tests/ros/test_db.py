@@ -38,10 +38,13 @@ from tms_msg_db.srv import (
 
 import programs
 from few_processes import LIMIT, Mesh, bare
+from tms_areas.trackers import Tracker
 from tms_config.config import CONFIGS
 from tms_db import store, store_address
 from tms_db.terrain import Terrain
 from tms_db.terrain_files import Size
+from tms_machine.values import to_parameters
+from tms_sensors.tracker_records import Told, TrackerRecords
 from words import words
 
 pytestmark = [
@@ -89,6 +92,7 @@ def test_tasks_records_and_history_through_ros(mesh: Mesh) -> None:
     cpp_names(mesh)
     registration_node(mesh)
     terrain(mesh)
+    trackers(mesh)
     backup(mesh)
 
 
@@ -117,6 +121,16 @@ def backup(mesh: Mesh) -> None:
     mesh.until(lambda: records() == before, "records as they were")
     assert len(mesh.db(ListTasks, "list_tasks").tasks) == tms("info")["documents"]["task"]  # type: ignore[index]
     assert mesh.ready()[0] == 200
+
+
+def trackers(mesh: Mesh) -> None:
+    """People that a sensing PC tells in a record."""
+    told = TrackerRecords(mesh.ros, {"tags": Tracker(kind="person", record="people")})
+    values = to_parameters({"x": [1.0, 3.5], "y": [2.0, 4.5]})
+    mesh.db(SetParameter, "set_parameter", record_name="people", values=values, create=True)
+    found: list[Told] = []
+    mesh.until(lambda: bool(found.extend(told.take()) or found), "the record was read")
+    assert found[-1].places() == [(1.0, 2.0), (3.5, 4.5)] and 0 <= found[-1].age() < LIMIT
 
 
 def terrain(mesh: Mesh) -> None:

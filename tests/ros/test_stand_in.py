@@ -19,7 +19,7 @@ from std_msgs.msg import Bool
 from tms_msg_rc.msg import MachineState
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
-from conftest import GATEWAYS_ONLY, Mesh, mesh_apart, running, wait_until
+from conftest import CLI, GATEWAYS_ONLY, Mesh, mesh_apart, running, wait_until
 from tms_config.config import load_site
 from tms_decision.reasons import SoftwareStop
 from tms_host.supervisor import Supervisor
@@ -88,8 +88,11 @@ class Small:
         """Ready for a goal, whatever the test before has left."""
         self.wait(lambda: self.state is not None and self.state.ready, "it is ready")
         self.wait(lambda: not self.state.moving and not self.state.goal, "it stands")
-        self.mesh.tms("rearm", "zx200", "--yes", expect=None)
+        wait_until(self._rearmed, 60, "it is armed", every=CLI)  # its gateway may just be replaced
         self.release.publish(Bool(data=False))
+
+    def _rearmed(self) -> bool:
+        return self.mesh.tms("rearm", "--all", "--yes", expect=None).returncode == 0
 
     @contextmanager
     def moving(self, seconds: float) -> Iterator[tuple[Any, list[int]]]:
@@ -102,7 +105,9 @@ class Small:
             for swing, at in ((0.5, seconds / 2), (0.0, seconds))
         ]
         call = self.peer.send(FollowJointTrajectory.Goal(trajectory=JointTrajectory(joint_names=JOINTS, points=points)))
-        self.wait(lambda: self.state.moving and self.state.goal and set(self.statuses) - known, "it moves")
+        moves = lambda: self.state.moving and self.state.goal and set(self.statuses) - known  # noqa: E731
+        self.wait(lambda: call.outcome is not None or moves(), "it moves")
+        assert call.outcome is None, call.result
         yield call, self.statuses[(set(self.statuses) - known).pop()]
 
 

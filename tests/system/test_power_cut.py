@@ -9,7 +9,7 @@ import threading
 import time
 from collections import deque
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -29,6 +29,7 @@ from words import words
 pytestmark = pytest.mark.system
 CUTS = int(os.environ.get("TMS_POWER_CUTS", "3"))
 STALL = 2.0  # s
+STARVED, ATTEMPTS = 3.0, 3  # s that a thread waits for a processor: DDS drops who is silent for 5
 STANDING = 1.5  # s; between two swings it stands for a moment only
 
 
@@ -171,6 +172,39 @@ def latch(mesh: Mesh) -> str:
 
 
 def test_a_disk_that_stalls_stops_nothing_and_loses_nothing(mesh: Mesh, disk: Disk) -> None:
+    for _ in range(ATTEMPTS):
+        delays = Delays(int((mesh.state / "supervisord.pid").read_text()))
+        rows = run_beside_stalls(mesh, disk)
+        assert [row["number"] for row in rows] == list(range(1, len(rows) + 1))
+        lost = [row["text"] for row in rows if row["kind"] in ("loss", "alarm")]
+        if not lost or delays.longest() < STARVED:
+            break
+    assert not lost, f"nobody waited for a processor for more than {delays.longest():.1f} s"
+    asked = next(row["number"] for row in rows if row["text"].startswith("stopping"))
+    assert all(row["number"] > asked for row in rows if row["kind"] == "stop")
+
+
+class Delays:
+    """How long threads of a mesh have waited for a processor since this was made: a busy PC loses what no disk does."""
+
+    def __init__(self, supervisord: int) -> None:
+        self._supervisord = supervisord
+        self._before = self._waited()
+
+    def _waited(self) -> dict[str, float]:
+        found = {}
+        for pid in family(self._supervisord):
+            with suppress(OSError):  # it has ended
+                for thread in Path(f"/proc/{pid}/task").iterdir():
+                    found[str(thread)] = int((thread / "schedstat").read_text().split()[1]) * 1e-9
+        return found
+
+    def longest(self) -> float:
+        return max(waited - self._before.get(thread, 0.0) for thread, waited in self._waited().items())
+
+
+def run_beside_stalls(mesh: Mesh, disk: Disk) -> list[dict[str, Any]]:
+    """The events of a run that is cancelled after the disk has stalled twice."""
     with swinging(mesh) as client:
         run_id = newest(mesh)
         for _ in range(2):
@@ -181,11 +215,7 @@ def test_a_disk_that_stalls_stops_nothing_and_loses_nothing(mesh: Mesh, disk: Di
         mesh.tms("cancel", run_id)
         out = client.output(60)
     assert json.loads(out)["outcome"] == "cancelled"
-    rows = events(mesh, run_id)
-    assert [row["number"] for row in rows] == list(range(1, len(rows) + 1))
-    assert not [row["text"] for row in rows if row["kind"] in ("loss", "alarm")]
-    asked = next(row["number"] for row in rows if row["text"].startswith("stopping"))
-    assert all(row["number"] > asked for row in rows if row["kind"] == "stop")
+    return events(mesh, run_id)
 
 
 def test_a_run_is_stopped_while_the_disk_stalls(mesh: Mesh, disk: Disk, node: Ros) -> None:

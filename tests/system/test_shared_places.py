@@ -97,9 +97,6 @@ class Watch:
         return max(ends) > ROAD[0] and min(ends) < ROAD[1]
 
 
-@pytest.mark.skipif(
-    "TMS_ROUNDS" not in os.environ, reason="make nightly: in one of two runs a goal came without its place"
-)
 def test_two_trucks_take_turns_on_a_road(mesh: Mesh) -> None:
     numbers = []
     for name in LANES:

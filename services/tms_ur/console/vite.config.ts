@@ -23,5 +23,6 @@ export default defineConfig(({ command }) => ({
     assetsInlineLimit: 0, // the policy of the site lets no data: address in
     modulePreload: { polyfill: false },
   },
+  server: { fs: { allow: ["../../.."] } }, // tests read tasks of the field
   test: { environment: "jsdom", cache: false, fsModuleCache: false, testTimeout: 120_000 }, // nothing is written beside the sources,
 }));

@@ -20,9 +20,6 @@ export function t(key, values = {}) {
   return text.replace(/\{(\w+)\}/g, (_, name) => String(values[name] ?? ""));
 }
 
-/** The name of a field of a run: its text f_<name>, or the name itself where it has no translation. */
-export const fieldName = (name) => WORDS[language][`f_${name}`] ?? name;
-
 /** The present language's text among those that the server sends. */
 export const inLanguage = (texts) => texts[language];
 
@@ -32,13 +29,6 @@ export const said = (reason) => (reason ? inLanguage(reason.text) : "");
 /** Date and time in the format of the language. */
 export function when(iso) {
   return iso ? new Date(iso).toLocaleString(language === "ja" ? "ja-JP" : "en-GB") : "-";
-}
-
-const PARTS = { hour: "2-digit", minute: "2-digit", second: "2-digit", fractionalSecondDigits: 1 };
-
-/** Time of day with tenths, for events. */
-export function clock(iso) {
-  return iso ? new Date(iso).toLocaleTimeString(language === "ja" ? "ja-JP" : "en-GB", PARTS) : "-";
 }
 
 /** Writes anew the texts that the server has sent in every language: elements with data-said in a part of the page. */

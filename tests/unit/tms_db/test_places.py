@@ -39,7 +39,7 @@ class Site:
     def __init__(self) -> None:
         self.db: Any = mongomock.MongoClient()["test"]
         self.connection = Connection()
-        self.numbers = 0
+        self.numbers = self.revision = 0
         self.start()
 
     def start(self) -> None:
@@ -63,9 +63,17 @@ class Site:
     def report(self, machine: str, in_use: tuple[str, ...] = (), inside: tuple[str, ...] = ()) -> Any:
         self.numbers += 1
         request = ReportPlaces.Request(
-            machine=machine, number=self.numbers, places=["road"], inside=inside, sure=True, in_use=in_use
+            machine=machine,
+            number=self.numbers,
+            places=["road"],
+            inside=inside,
+            sure=True,
+            in_use=in_use,
+            revision=self.revision,
         )
-        return self.keeper.report(request, ReportPlaces.Response())
+        answer = self.keeper.report(request, ReportPlaces.Response())
+        self.revision = answer.revision
+        return answer
 
     def both(self) -> None:
         self.report("a")
@@ -85,7 +93,7 @@ def site() -> Site:
 
 
 def test_a_book_is_read_as_it_was_written(site: Site) -> None:
-    book = Book(("road",), {"road": Claim("a", frozenset({"r", ""}), 2.5, True, "me")}, (), {"a": ("road",)})
+    book = Book(("road",), {"road": Claim("a", frozenset({"r", ""}), 2.5, True, "me", 7)}, (), {"a": ("road",)}, 9)
     PlaceBook(site.db).write(book)
     assert PlaceBook(site.db).read() == book
     site.db["place"].update_one({}, {"$set": {"claims": [{"place": "road"}]}})

@@ -32,10 +32,10 @@ class Ros:
         self.asked.append(request)
 
 
-def told(state: int, holder: str = "", *queue: str) -> Places:
+def told(state: int, holder: str = "", *queue: str, revision: int = 0) -> Places:
     waits = [PlaceRequest(machine=one) for one in queue]
     since = Time(sec=1_700_000_000)
-    return Places(places=[Place(name="road", state=state, holder=holder, queue=waits, since=since)])
+    return Places(revision=revision, places=[Place(name="road", state=state, holder=holder, queue=waits, since=since)])
 
 
 @pytest.fixture
@@ -74,18 +74,30 @@ class Keeper:
         monkeypatch.setattr(place_holding, "monotonic", lambda: self.now)
         monkeypatch.setattr(place_holding, "sleep", self._sleep)
 
-    def _ask(self, _ros: Any, _kind: Any, name: str, request: Any, _limit: float) -> None:
+    def _ask(self, _ros: Any, _kind: Any, name: str, request: Any, _limit: float) -> Any:
         self.away -= 1
         if self.away >= 0:
             raise RosError(NoServer("tms:db", name, 3.0))
         self.ros.asked.append(request)
-        self.ros.tell(told(Place.HELD, "b", "a"))
+        self.ros.tell(told(Place.HELD, "b", "a", revision=7))
+        return AskPlaces.Response(revision=7)
 
     def _sleep(self, seconds: float) -> None:
         self.now += seconds
         self.looks += 1
         if self.looks == 3 and self.away < 0:
-            self.ros.tell(told(Place.HELD, "a"))
+            self.ros.tell(told(Place.HELD, "a", revision=8))
+
+
+def test_what_was_told_before_the_keeper_took_a_wish_is_no_answer(ros: Ros) -> None:
+    site: Any = SitePlaces(ros)  # type: ignore[arg-type]
+    ros.tell(told(Place.HELD, "a", revision=4))  # for the goal before, which has freed it since
+    site.answered(6)
+    assert site.waits("a", "road") == WaitsForKeeper("a", "road")
+    ros.tell(told(Place.GRANTED, "a", revision=6))
+    assert site.waits("a", "road") == WaitsForLease("a", "road")
+    ros.tell(told(Place.HELD, "a", revision=7))
+    assert site.waits("a", "road") is None
 
 
 def test_a_goal_waits_until_the_machine_has_its_places_and_frees_them_after(

@@ -2,18 +2,33 @@
 
 import math
 from collections.abc import Callable
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
 from geometry_msgs.msg import Point, PointStamped, Pose, PoseArray, PoseStamped
+from pydantic import ValidationError
 from std_msgs.msg import Bool, Header
+from tms_msg_db.msg import Record
 
-from tms_areas.reasons import ManyIntruders, NotInMapFrame, PlaceNoNumber, TrackerClockAhead
+from tms_areas.reasons import (
+    ManyIntruders,
+    NoSwitch,
+    NotInMapFrame,
+    PlaceNoNumber,
+    PlacesUneven,
+    TopicOrRecord,
+    TrackerClockAhead,
+)
 from tms_areas.trackers import Tracker
-from tms_config.clock import monotonic
+from tms_config.clock import monotonic, unix_time
 from tms_machine import stamps
-from tms_reason.errors import TmsError
+from tms_machine.values import to_parameters
+from tms_reason.errors import RosError, TmsError
+from tms_reason.validation import explain
+from tms_ros.reasons import NoServer
 from tms_ros.topics import Arrival
+from tms_sensors import tracker_records
 from tms_sensors.trackers import MOST, Hearing, age_of, places_of
 
 MAP = Header(frame_id="map")
@@ -81,3 +96,82 @@ def test_a_gate_that_was_open_between_two_looks_is_heard() -> None:
     told = hearing.take().told
     assert told["gate"].passed and not told["gate"].opened
     assert told["eye"].wrong == PlaceNoNumber() and told["eye"].places.tolist() == [[1.0, 2.0]]
+
+
+class Records:
+    """A database whose records the test makes, and whose reader is the test."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.fields: dict[str, Any] = {}
+        self.updated, self.away, self.step = unix_time(), False, lambda: None
+        monkeypatch.setattr(tracker_records, "ask", self._ask)
+
+    def poll_in_thread(self, _period: float, step: Callable[[], None], _name: str) -> None:
+        self.step = step
+
+    def _ask(self, _ros: Any, _kind: Any, _name: str, request: Any, _limit: float) -> Any:
+        if self.away:
+            raise RosError(NoServer("tms:db", "/tms/db/get_parameter", 1.0))
+        assert (request.model_name, request.max_age) == ("", -1.0)
+        values = to_parameters(self.fields[request.record_name])
+        return SimpleNamespace(record=Record(values=values, updated_at=stamps.time(self.updated)))
+
+
+@pytest.fixture
+def records(monkeypatch: pytest.MonkeyPatch) -> Records:
+    return Records(monkeypatch)
+
+
+def told_by(records: Any, name: str, fields: dict[str, Any]) -> Any:
+    areas = ("yard",) if name == "gate" else ()
+    hearing = Hearing(records, {name: Tracker(kind="gate" if areas else "person", record=name, areas=areas)})
+    records.fields[name] = fields
+    records.step()
+    return hearing.take().told[name]
+
+
+@pytest.mark.parametrize(
+    ("fields", "places"),
+    [
+        ({"x": 1.0, "y": 2.0}, [[1.0, 2.0]]),
+        ({"x": [1.0, 3.0], "y": [2, 4]}, [[1.0, 2.0], [3.0, 4.0]]),
+        ({"x": [], "y": []}, []),
+    ],
+)
+def test_a_record_tells_places(records: Records, fields: dict[str, Any], places: list[Any]) -> None:
+    one = told_by(records, "tags", fields)
+    assert one.places.tolist() == places and one.heard and one.wrong is None
+
+
+@pytest.mark.parametrize(
+    ("name", "fields", "why"),
+    [
+        ("tags", {"x": [1.0], "y": [1.0, 2.0]}, PlacesUneven()),
+        ("tags", {"x": 1.0}, PlacesUneven()),
+        ("tags", {"x": "1", "y": "2"}, PlacesUneven()),
+        ("tags", {"x": math.inf, "y": 1.0}, PlaceNoNumber()),
+        ("gate", {"opened": 1}, NoSwitch()),
+    ],
+)
+def test_a_record_that_tells_no_places_is_told(records: Records, name: str, fields: Any, why: Any) -> None:
+    assert told_by(records, name, fields).wrong == why
+
+
+def test_a_gate_tells_by_its_record_and_an_old_one_by_its_time(records: Records) -> None:
+    assert told_by(records, "gate", {"opened": True}).opened
+    records.updated -= 5.0
+    assert monotonic() - told_by(records, "tags", {"x": 1.0, "y": 2.0}).since == pytest.approx(5.0, abs=1.0)
+    records.updated += 60.0
+    assert isinstance(told_by(records, "tags", {"x": 1.0, "y": 2.0}).wrong, TrackerClockAhead)
+
+
+def test_a_database_that_is_away_makes_its_tracker_silent(records: Records) -> None:
+    records.away = True
+    assert not told_by(records, "tags", {"x": 1.0, "y": 2.0}).heard
+
+
+@pytest.mark.parametrize("given", [{}, {"topic": "people", "record": "people"}])
+def test_a_tracker_tells_by_a_topic_or_by_a_record(given: dict[str, str]) -> None:
+    with pytest.raises(ValidationError) as error:
+        Tracker(kind="person", **given)  # type: ignore[arg-type]
+    assert explain(error.value).find(TopicOrRecord) is not None

@@ -26,6 +26,7 @@ from tms_ur.access import Access
 from tms_ur.api import create_app
 from tms_ur.board import Board
 from tms_ur.data_models import Change, Record, Sensing, SensingInput
+from tms_ur.ground_models import Ground
 from tms_ur.models import AddedTemplate, Event, Rearmed, Receipt, Run, Task, TaskText, Template
 from tms_ur.reason_view import of_line, view
 from tms_ur.scene_models import Scene, scene
@@ -126,6 +127,10 @@ class FakeSiteClient:
         body.pose.position.x, body.pose.position.y, body.pose.position.z = 8.0, 2.0, 2.0
         area = SceneArea(record="dig", centre=Point(x=5.0), size=Vector3(x=2.0, y=1.0, z=0.5))
         return scene(machine, GetScene.Response(bodies=[body], areas=[area], way=[Point(x=6.0, z=1.0)]))
+
+    def ground(self, cells: int) -> Ground:
+        self._called("ground", cells)
+        return Ground(cell=10.0, rows=1, columns=2, heights=[1.25, None], design=[0.5, None])
 
     def sensing(self) -> Sensing:
         facts = {"name": "pile", "topic": "/pile", "state": "alive", "hz": 1.0, "hz_expected": None, "age": 0.5}
@@ -230,10 +235,10 @@ def site(**changes: Any) -> Site:
 
 
 def app(site_client: FakeSiteClient, bind: str = "127.0.0.1", users: Path | None = None, **parts: Any) -> FastAPI:
-    """The application with fakes; `parts` may hold an audit, a clock, machines, settings of the console."""
+    """The application with fakes; `parts` may hold an audit, a clock, machines, a ground, settings of the console."""
     access = Access(users, parts["clock"]) if "clock" in parts else Access(users)
-    machines = {"machines": parts["machines"]} if "machines" in parts else {}
-    where = site(bind=bind, console=parts.get("console", Console()), **machines)
+    told = {name: parts[name] for name in ("machines", "ground") if name in parts}
+    where = site(bind=bind, console=parts.get("console", Console()), **told)
     return create_app(site_client, parts.get("audit", FakeAudit()), where, access)  # type: ignore[arg-type]
 
 

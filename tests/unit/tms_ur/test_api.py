@@ -389,6 +389,16 @@ def test_the_site_is_described(client: Client) -> None:
     assert (machine["name"], machine["kind"]) == ("zx200", "backhoe")
     assert [link["joint"] for link in machine["arm"]] == ["boom_joint", "arm_joint", "bucket_joint", "bucket_end_joint"]
     assert all(len(box["min"]) == len(box["max"]) == 3 for box in machine["footprint"])
+    assert [one["child"] for one in machine["joints"]][-1] == "bucket_end_link"
+    assert {one["link"] for one in machine["bodies"]} <= {one["child"] for one in machine["joints"]}
+    assert machine["bucket"]["link"] == "bucket_link" and machine["vessel"] is None
+
+
+def test_the_ground_of_a_site_that_keeps_one(site_client: FakeSiteClient) -> None:
+    assert Client(app(site_client)).get("/api/ground").json()["rows"] == 0
+    found = Client(app(site_client, ground={})).get("/api/ground?cells=500").json()
+    assert (found["heights"], found["design"]) == ([1.25, None], [0.5, None])
+    assert site_client.calls == [("ground", 500)]
 
 
 def test_resume_or_abandon_an_interrupted_run(client: Client, site_client: FakeSiteClient) -> None:
@@ -600,7 +610,7 @@ def test_every_endpoint_is_in_the_document(client: Client) -> None:
         "/api/tasks/{task_id}/diff", "/api/tasks/{task_id}/remove", "/api/runs/{run_id}/tree",
         "/api/runs/{run_id}/export", "/api/audit", "/api/machines/{name}/scene",
         "/api/processes/{name}/log", "/api/processes/{name}/restart",
-        "/api/templates", "/api/areas", "/api/places", "/api/places/{name}/revoke",
+        "/api/templates", "/api/areas", "/api/ground", "/api/places", "/api/places/{name}/revoke",
     }  # fmt: skip
     assert {method for path in document["paths"].values() for method in path} == {
         "get",

@@ -18,7 +18,7 @@ FILES = sorted(path for path in STATIC.rglob("*") if path.is_file())
 CODE = {path: path.read_text(encoding="utf-8") for path in FILES if path.suffix == ".js"}
 SOURCE = PROJECT / "services" / "tms_ur" / "console" / "src"
 REACT = {path: path.read_text(encoding="utf-8") for path in SOURCE.rglob("*.ts*") if path.name != "api.ts"}
-REACT_PAGES = {"board", "tree"}
+REACT_PAGES = set(re.findall(r"^  (\w+): ", (SOURCE / "pages.tsx").read_text(encoding="utf-8"), re.MULTILINE))
 PAGES = {path: path.read_text(encoding="utf-8") for path in FILES if path.suffix == ".html"}
 
 
@@ -46,6 +46,8 @@ def used() -> set[str]:
         found |= set(re.findall(r'data-(?:t|label)="(\w+)"', text))
     for text in REACT.values():
         found |= {key for args in re.findall(r"\bt\(([^()]*)", text) for key in re.findall(r'"(\w+)"', args)}
+        for label, heads in re.findall(r'\blabel=("\w+")\s+heads=\{\[([^\]]*)\]', text):
+            found |= set(re.findall(r'"(\w+)"', label + heads))
     for text in CODE.values():
         found |= set(re.findall(r'\bt\("(\w+)"', text)) | set(re.findall(r'\b(?:t|label): "(\w+)"', text))
         found |= set(re.findall(r'\bheading\("(\w+)"', text)) | set(re.findall(r'\bbutton\("(\w+)"', text))
@@ -117,7 +119,7 @@ def test_files_are_served() -> None:
     client = Client(app(FakeSiteClient()))
     assert client.get("/").text == (BUILT / "index.html").read_text(encoding="utf-8")
     assert client.get("/dom.js").headers["content-type"].startswith("text/javascript")
-    assert client.get("/pages/history.js").status_code == client.get("/panel.html").status_code == 200
+    assert client.get("/pages/data.js").status_code == client.get("/panel.html").status_code == 200
     assert client.get("/../api.py").status_code == client.get("/%2e%2e/api.py").status_code == 404
 
 

@@ -29,7 +29,7 @@ export interface paths {
             cookie?: never;
         };
         /** The site's machines and their bodies */
-        get: operations["site_info_api_site_get"];
+        get: operations["site_bodies_api_site_get"];
         put?: never;
         post?: never;
         delete?: never;
@@ -366,6 +366,23 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/ground": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** Heights of the ground and of the design, of the whole site */
+        get: operations["ground_api_ground_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/machines/{name}/scene": {
         parameters: {
             query?: never;
@@ -694,6 +711,24 @@ export interface components {
             yes: boolean;
         };
         /**
+         * BladeShape
+         * @description The lower edge of a blade.
+         */
+        BladeShape: {
+            /** Link */
+            link: string;
+            /**
+             * Edge
+             * @description x, z on its link, m
+             */
+            edge: number[];
+            /**
+             * Width
+             * @description m
+             */
+            width: number;
+        };
+        /**
          * Box
          * @description Corners of a box.
          */
@@ -708,6 +743,24 @@ export interface components {
              * @description m
              */
             max: number[];
+        };
+        /**
+         * BucketShape
+         * @description The inside of a bucket, the same over its width.
+         */
+        BucketShape: {
+            /** Link */
+            link: string;
+            /**
+             * Section
+             * @description x, z on its link, from the rear lip to the cutting edge, m
+             */
+            section: number[][];
+            /**
+             * Width
+             * @description m
+             */
+            width: number;
         };
         /**
          * Change
@@ -846,6 +899,54 @@ export interface components {
             reason: components["schemas"]["ReasonView"];
         };
         /**
+         * Ground
+         * @description Heights at the middles of square cells in `map`, row by row along y; no rows where the site keeps no ground.
+         */
+        Ground: {
+            /**
+             * X0
+             * @description m: the corner of the first cell with the least x ...
+             * @default 0
+             */
+            x0: number;
+            /**
+             * Y0
+             * @description m: ... and the least y
+             * @default 0
+             */
+            y0: number;
+            /**
+             * Cell
+             * @description m, side of a cell
+             * @default 1
+             */
+            cell: number;
+            /**
+             * Rows
+             * @description along y
+             * @default 0
+             */
+            rows: number;
+            /**
+             * Columns
+             * @description along x
+             * @default 0
+             */
+            columns: number;
+            /**
+             * Heights
+             * @description m, null: unknown
+             * @default []
+             */
+            heights: (number | null)[];
+            /**
+             * Design
+             * @description m that it should become; null: no design there; empty: none at all
+             * @default []
+             */
+            design: (number | null)[];
+        };
+        /**
          * Host
          * @description One PC of the site; its agent speaks every 2 s, and at once when something changes.
          */
@@ -883,6 +984,33 @@ export interface components {
             velocity: number;
         };
         /**
+         * JointOrigin
+         * @description Where a joint is on its parent link; first turned by `pitch` about y, then by its angle about `axis`.
+         */
+        JointOrigin: {
+            /** Joint */
+            joint: string;
+            /** Parent */
+            parent: string;
+            /** Child */
+            child: string;
+            /**
+             * Xyz
+             * @description m
+             */
+            xyz: number[];
+            /**
+             * Pitch
+             * @description rad
+             */
+            pitch: number;
+            /**
+             * Axis
+             * @description x, y or z
+             */
+            axis: string;
+        };
+        /**
          * LastStop
          * @description The last stop of a machine.
          */
@@ -918,6 +1046,29 @@ export interface components {
             /**
              * Pitch
              * @description rad, at joint angle 0
+             */
+            pitch: number;
+        };
+        /**
+         * LinkBox
+         * @description What a link's body lies in, in the frame of the link turned about y by `pitch`.
+         */
+        LinkBox: {
+            /**
+             * Min
+             * @description m
+             */
+            min: number[];
+            /**
+             * Max
+             * @description m
+             */
+            max: number[];
+            /** Link */
+            link: string;
+            /**
+             * Pitch
+             * @description rad
              */
             pitch: number;
         };
@@ -1662,6 +1813,17 @@ export interface components {
              * @description from the turning body to the tool, empty if it has no arm
              */
             arm: components["schemas"]["Link"][];
+            /**
+             * Joints
+             * @description parents before children; the first parent is base_link
+             */
+            joints: components["schemas"]["JointOrigin"][];
+            /** Bodies */
+            bodies: components["schemas"]["LinkBox"][];
+            bucket: components["schemas"]["BucketShape"] | null;
+            vessel: components["schemas"]["VesselShape"] | null;
+            blade: components["schemas"]["BladeShape"] | null;
+            tracks: components["schemas"]["TracksShape"] | null;
         };
         /**
          * Spot
@@ -1845,6 +2007,32 @@ export interface components {
             ja: string;
         };
         /**
+         * TracksShape
+         * @description Where two tracks touch the ground, in base_link.
+         */
+        TracksShape: {
+            /**
+             * Rear
+             * @description m, x
+             */
+            rear: number;
+            /**
+             * Front
+             * @description m, x
+             */
+            front: number;
+            /**
+             * Gauge
+             * @description m from middle to middle
+             */
+            gauge: number;
+            /**
+             * Width
+             * @description m, of one
+             */
+            width: number;
+        };
+        /**
          * Tree
          * @description The shape of a run's tree: one entry a node in each list, in the order of `nodes` of a state.
          */
@@ -1874,6 +2062,24 @@ export interface components {
              * @default []
              */
             templates: string[];
+        };
+        /**
+         * VesselShape
+         * @description The inside of a carrier's vessel, on its link.
+         */
+        VesselShape: {
+            /**
+             * Min
+             * @description m
+             */
+            min: number[];
+            /**
+             * Max
+             * @description m
+             */
+            max: number[];
+            /** Link */
+            link: string;
         };
         /**
          * Watched
@@ -1955,7 +2161,7 @@ export interface operations {
             };
         };
     };
-    site_info_api_site_get: {
+    site_bodies_api_site_get: {
         parameters: {
             query?: never;
             header?: never;
@@ -3854,6 +4060,65 @@ export interface operations {
             };
             /** @description a value is wrong */
             422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+        };
+    };
+    ground_api_ground_get: {
+        parameters: {
+            query?: {
+                /** @description about how many at most */
+                cells?: number;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Ground"];
+                };
+            };
+            /** @description the request cannot be read */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description log in first */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description a value is wrong */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description a module of the site is away or does not answer */
+            503: {
                 headers: {
                     [name: string]: unknown;
                 };

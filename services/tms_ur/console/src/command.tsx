@@ -9,9 +9,11 @@ interface Props {
   children: ReactNode;
   className?: string;
   label?: string; // spoken name, where it tells more than the text
+  id?: string;
+  disabled?: boolean;
 }
 
-export function Command({ work, children, className, label }: Props) {
+export function Command({ work, children, className, label, id, disabled = false }: Props) {
   const [busy, setBusy] = useState(false);
   const element = useRef<HTMLButtonElement>(null);
   const give = async () => {
@@ -32,7 +34,15 @@ export function Command({ work, children, className, label }: Props) {
     }
   };
   return (
-    <button type="button" ref={element} className={className} disabled={busy} aria-label={label} onClick={give}>
+    <button
+      type="button"
+      id={id}
+      ref={element}
+      className={className}
+      disabled={busy || disabled}
+      aria-label={label}
+      onClick={give}
+    >
       {children}
     </button>
   );

@@ -13,6 +13,9 @@ import { texts } from "./texts";
 // The board comes with the frame, others when they are opened.
 const REACT: Record<string, ComponentType<{ rest: string }>> = {
   board: Board,
+  history: lazy(() => import("./history/history_page")),
+  map: lazy(() => import("./map/map_page")),
+  tasks: lazy(() => import("./tasks/tasks_page")),
   tree: lazy(() => import("./tree/tree_page")),
 };
 

@@ -22,6 +22,7 @@ texts.use(initReactI18next).init({
 onLanguage(() => texts.changeLanguage(shown()));
 
 const LOCALES = { ja: "ja-JP", en: "en-GB" };
+const locale = () => LOCALES[texts.language as Language];
 
 /** The text of a reason in the present language; empty for none. */
 export const said = (reason: ReasonView | null | undefined) => reason?.text[texts.language as Language] ?? "";
@@ -32,5 +33,19 @@ export function timeOfDay(iso: string, now: number): string {
   const time: Intl.DateTimeFormatOptions = { hour: "2-digit", minute: "2-digit" };
   const day: Intl.DateTimeFormatOptions = { day: "numeric", month: "short" };
   const today = then.toDateString() === new Date(now).toDateString();
-  return then.toLocaleString(LOCALES[texts.language as Language], today ? time : { ...day, ...time });
+  return then.toLocaleString(locale(), today ? time : { ...day, ...time });
 }
+
+/** Date and time of day; a dash for none. */
+export const dateTime = (iso: string | null | undefined) => (iso ? new Date(iso).toLocaleString(locale()) : "-");
+
+const TENTHS: Intl.DateTimeFormatOptions = {
+  hour: "2-digit",
+  minute: "2-digit",
+  second: "2-digit",
+  fractionalSecondDigits: 1,
+};
+
+/** Time of day with tenths of a second, for events; a dash for none. */
+export const clock = (iso: string | null | undefined) =>
+  iso ? new Date(iso).toLocaleTimeString(locale(), TENTHS) : "-";

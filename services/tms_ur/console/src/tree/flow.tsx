@@ -10,7 +10,7 @@ import {
   ReactFlowProvider,
   useReactFlow,
 } from "@xyflow/react";
-import { useEffect, useMemo, useRef, useState } from "react";
+import { useEffect, useMemo, useState } from "react";
 import { useTranslation } from "react-i18next";
 import type { Tree } from "../models";
 import { Details } from "./details";
@@ -33,6 +33,7 @@ interface Props {
   tree: Tree;
   digits: string; // state of every node
   leaf: string; // path of the one that works or waits
+  last: Map<number, NodeState>; // of each node by its index: the last state that was not idle
 }
 
 export function TreeFlow(props: Props) {
@@ -43,27 +44,11 @@ export function TreeFlow(props: Props) {
   );
 }
 
-/** The last state of each node that was not idle: a loop sets its children back. */
-function useLast(tree: Tree, digits: string): Map<number, NodeState> {
-  const last = useRef({ tree, states: new Map<number, NodeState>() });
-  if (last.current.tree !== tree) {
-    last.current = { tree, states: new Map() };
-  }
-  for (const node of nodesOf(tree).values()) {
-    const state = stateOf(node, digits);
-    if (state !== "idle") {
-      last.current.states.set(node.index, state);
-    }
-  }
-  return last.current.states;
-}
-
-function Flow({ tree, digits, leaf }: Props) {
+function Flow({ tree, digits, leaf, last }: Props) {
   const { t } = useTranslation();
   const [byHand, setByHand] = useState(new Map<string, boolean>());
   const [chosen, setChosen] = useState("");
   const nodes = useMemo(() => nodesOf(tree), [tree]);
-  const last = useLast(tree, digits);
   const open = openPaths(nodes, digits, byHand);
   const shape = [...open].join();
   // biome-ignore lint/correctness/useExhaustiveDependencies: `shape` is what `open` holds

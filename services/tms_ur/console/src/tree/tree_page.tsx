@@ -9,6 +9,7 @@ import type { ActiveRun, State, Tree } from "../models";
 import { Said } from "../said";
 import { said, timeOfDay } from "../texts";
 import { TreeFlow } from "./flow";
+import { useLast } from "./use_last";
 
 interface Shown {
   id: string;
@@ -28,6 +29,7 @@ export default function TreePage({ rest }: { rest: string }) {
   if (run !== undefined && tree !== null) {
     shown.current = { id: run.run_id, tree, digits: run.nodes, leaf: run.leaf };
   }
+  const last = useLast(shown.current?.id ?? "", shown.current?.digits ?? "");
   const alive = state?.scheduler.alive ?? true;
   return (
     <>
@@ -48,7 +50,7 @@ export default function TreePage({ rest }: { rest: string }) {
         <p id="no_tree">{t(alive ? "no_tree" : "scheduler_silent")}</p>
       )}
       {state && run && <Why run={run} state={state} />}
-      {shown.current && <TreeFlow key={shown.current.id} {...shown.current} />}
+      {shown.current && <TreeFlow key={shown.current.id} {...shown.current} last={last} />}
     </>
   );
 }

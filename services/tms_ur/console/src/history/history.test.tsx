@@ -1,0 +1,80 @@
+import { configure, fireEvent, render, screen, waitFor } from "@testing-library/react";
+import { expect, test, vi } from "vitest";
+import { journalOf } from "../journal/journal";
+import type { Event } from "../models";
+import { Cursor } from "./cursor";
+import { lanesOf } from "./lanes";
+import { rowsOf } from "./rows";
+
+configure({ asyncUtilTimeout: 60_000 }); // ms; a busy machine is no failure
+
+const BEGIN = Date.parse("2026-01-31T12:00:00Z");
+const event = (number: number, kind: string, text = "", facts: Partial<Event> = {}) =>
+  ({
+    number,
+    stamp: new Date(BEGIN + number * 1000).toISOString(),
+    kind,
+    node: "",
+    text,
+    values: {},
+    ...facts,
+  }) as Event;
+const words = (one: Event) => one.text;
+const ALL = { kind: "", words: "", fold: false };
+
+test("rows are the newest before the cursor, filtered", () => {
+  const events = [event(1, "run", "begins"), event(2, "stop", "stood"), event(3, "run", "ends")];
+  const shown = (count: number, wanted = {}) =>
+    rowsOf(events, count, { ...ALL, ...wanted }, words).map((row) => row.event.number);
+  expect(shown(3)).toEqual([3, 2, 1]);
+  expect(shown(2)).toEqual([2, 1]);
+  expect(shown(3, { kind: "run" })).toEqual([3, 1]);
+  expect(shown(3, { words: "STOOD" })).toEqual([2]);
+});
+
+test("what a loop repeats is one row", () => {
+  const polled = Array.from({ length: 300 }, (_, index) => event(index, "node", index % 2 === 0 ? "asks" : "waits"));
+  expect(rowsOf(polled, 300, ALL, words).length).toBe(100);
+  const rows = rowsOf(polled, 300, { ...ALL, fold: true }, words);
+  expect(rows.map((row) => [row.event.number, row.times])).toEqual([
+    [299, 150],
+    [298, 150],
+  ]);
+});
+
+const PORTS = ["", 'model_name="zx200" subtask_name="dig"', 'model_name="ic120" subtask_name="drive"'];
+const same = PORTS.map(() => "");
+const TREE = { paths: ["0", "0.0", "0.1"], names: same, types: same, kinds: same, ports: PORTS };
+const JOURNAL = journalOf(
+  [
+    event(0, "tree", "", { values: TREE }),
+    event(1, "node", "a IDLE -> RUNNING", { node: "0.0" }),
+    event(2, "stop", "stood"),
+    event(3, "node", "a RUNNING -> SUCCESS", { node: "0.0" }),
+    event(4, "node", "b IDLE -> RUNNING", { node: "0.1" }),
+    event(5, "stop", "stood"),
+  ],
+  false,
+);
+
+test("each machine has a lane of what it did", () => {
+  const [zx200, ic120, ...more] = lanesOf(JOURNAL);
+  expect(zx200).toMatchObject({ machine: "zx200", bars: [{ label: "dig", state: "success", end: BEGIN + 3000 }] });
+  expect(ic120).toMatchObject({ machine: "ic120", bars: [{ label: "drive", state: "running", end: null }] });
+  expect(more).toEqual([]);
+});
+
+test("the cursor jumps to stops, links to its moment, and plays to the end", async () => {
+  const onTime = vi.fn();
+  const { rerender } = render(<Cursor run="r-1" journal={JOURNAL} time={BEGIN + 2500} onTime={onTime} />);
+  fireEvent.click(screen.getByRole("button", { name: "Next stop" }));
+  fireEvent.click(screen.getByRole("button", { name: "Stop before" }));
+  expect(onTime.mock.calls.flat()).toEqual([BEGIN + 5000, BEGIN + 2000]);
+  expect(screen.getByRole("link").getAttribute("href")).toBe("#history/r-1/2.5");
+  onTime.mockClear();
+  fireEvent.change(screen.getByRole("combobox"), { target: { value: "60" } });
+  fireEvent.click(screen.getByRole("button", { name: /Play/ }));
+  await waitFor(() => expect(onTime).toHaveBeenCalledWith(BEGIN + 5000)); // and not beyond it
+  rerender(<Cursor run="r-1" journal={JOURNAL} time={BEGIN + 5000} onTime={onTime} />);
+  expect(screen.getByRole("button", { name: /Play/ }).getAttribute("aria-pressed")).toBe("false");
+});

@@ -1,0 +1,119 @@
+// The time line of one run: tree, machines, stops and journal at one cursor.
+import { useEffect, useRef, useState } from "react";
+import { useTranslation } from "react-i18next";
+import { beginOf, countAt, endOf, type Journal } from "../journal/journal";
+import { momentAfter } from "../journal/replay";
+import { useJournal } from "../journal/use_journal";
+import { useLive } from "../live";
+import type { Run } from "../models";
+import { Problem } from "../problem";
+import { clock } from "../texts";
+import { TreeFlow } from "../tree/flow";
+import { Cursor } from "./cursor";
+import { Events, textOf } from "./events";
+import { LaneView } from "./lane_view";
+
+const FORMS = ["json", "csv", "mcap"];
+
+interface Props {
+  id: string;
+  run: Run | undefined; // undefined: older than the list
+  seconds: string; // of the moment that the address names, since the begin; empty: the end
+}
+
+export function Past({ id, run, seconds }: Props) {
+  const { state } = useLive();
+  const { journal, error } = useJournal(id, state?.runs.some((one) => one.run_id === id) ?? false);
+  return (
+    <>
+      <Problem id="past_problem" error={error} />
+      {journal && <Line id={id} run={run} seconds={seconds} journal={journal} />}
+    </>
+  );
+}
+
+function Line({ id, run, seconds, journal }: Props & { journal: Journal }) {
+  const { t } = useTranslation();
+  const section = useRef<HTMLElement>(null);
+  const [chosen, setChosen] = useState<number | null>(null); // null: the end, also while the run goes on
+  const begin = beginOf(journal);
+  useEffect(() => {
+    const asked = seconds === "" ? Number.NaN : Number(seconds);
+    setChosen(Number.isFinite(asked) ? begin + asked * 1000 : null);
+  }, [seconds, begin]);
+  useEffect(() => section.current?.scrollIntoView(), []);
+  const time = Math.min(chosen ?? endOf(journal), endOf(journal));
+  return (
+    <section id="past" ref={section}>
+      <h2 id="past_title">{`${t("run")} ${id}`}</h2>
+      <Values run={run} />
+      <Exports id={id} />
+      <Receipts journal={journal} onTime={setChosen} />
+      <p id="journal_cut" className="bad">
+        {journal.cut ? t("journal_cut", { number: journal.events.length }) : ""}
+      </p>
+      <div className="cursor">
+        <Cursor run={id} journal={journal} time={time} onTime={setChosen} />
+        <LaneView journal={journal} time={time} onTime={setChosen} />
+      </div>
+      <PastTree journal={journal} time={time} />
+      <Events journal={journal} time={time} onTime={setChosen} />
+    </section>
+  );
+}
+
+function PastTree({ journal, time }: { journal: Journal; time: number }) {
+  const moment = momentAfter(journal, countAt(journal, time));
+  return journal.tree && <TreeFlow tree={journal.tree} {...moment} />;
+}
+
+/** The further facts of the run that the scheduler has recorded. */
+function Values({ run }: { run: Run | undefined }) {
+  const { t } = useTranslation();
+  const values = Object.entries(run?.values ?? {});
+  if (values.length === 0) {
+    return null;
+  }
+  return (
+    <ul id="past_values" className="plain">
+      {values.map(([name, value]) => (
+        <li key={name}>{`${t(`f_${name}`, { defaultValue: name })}: ${value}`}</li>
+      ))}
+    </ul>
+  );
+}
+
+function Exports({ id }: { id: string }) {
+  const { t } = useTranslation();
+  return (
+    <div id="exports" className="bar">
+      <span>{t("export")}:</span>
+      {FORMS.map((form) => (
+        <a key={form} className="button" href={`/api/runs/${encodeURIComponent(id)}/export?form=${form}`} download="">
+          {form.toUpperCase()}
+        </a>
+      ))}
+    </div>
+  );
+}
+
+function Receipts({ journal, onTime }: { journal: Journal; onTime: (time: number) => void }) {
+  const { t } = useTranslation();
+  const stops = journal.events.flatMap((event, index) => (event.kind === "stop" ? [{ event, index }] : []));
+  return (
+    <>
+      <h3>{t("receipts")}</h3>
+      <ul id="receipts" className="plain">
+        {stops.length === 0 && <li>{t(journal.cut ? "no_receipts_yet" : "no_receipts")}</li>}
+        {stops.map(({ event, index }) => (
+          <li key={event.number}>
+            <button type="button" className="plain_time" onClick={() => onTime(journal.times[index] ?? 0)}>
+              {clock(event.stamp)}
+            </button>{" "}
+            {textOf(event)}
+          </li>
+        ))}
+      </ul>
+    </>
+  );
+}

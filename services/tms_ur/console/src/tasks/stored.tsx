@@ -1,0 +1,110 @@
+// The stored tasks: the newest version of each, older ones on request.
+import { useState } from "react";
+import { useTranslation } from "react-i18next";
+import { Command } from "../command";
+import { confirmed } from "../confirm";
+import type { Task } from "../models";
+import { get, post } from "../server";
+import { startTask } from "../start";
+import { Table } from "../table";
+import { dateTime, texts } from "../texts";
+import { Difference } from "./difference";
+import { versionsOf } from "./versions";
+
+async function remove(id: number): Promise<string> {
+  if (!(await confirmed(texts.t("remove_ask", { id })))) {
+    return "";
+  }
+  await post("/api/tasks/{task_id}/remove", {}, { task_id: id });
+  return texts.t("removed", { id });
+}
+
+async function download(id: number): Promise<string> {
+  const { xml } = await get("/api/tasks/{task_id}", { task_id: id });
+  const url = URL.createObjectURL(new Blob([xml], { type: "text/xml" }));
+  Object.assign(document.createElement("a"), { href: url, download: `task_${id}.xml` }).click();
+  URL.revokeObjectURL(url);
+  return "";
+}
+
+/** How a version differs from the one before it, as text. */
+async function difference(task: Task, before: Task): Promise<string> {
+  const { xml } = await get("/api/tasks/{task_id}", { task_id: task.id });
+  return (await post("/api/tasks/{task_id}/diff", { xml }, { task_id: before.id })).text;
+}
+
+export function Stored({ tasks, changed }: { tasks: Task[]; changed: () => void }) {
+  const [open, setOpen] = useState(new Set<number>());
+  const [shown, setShown] = useState<string | null>(null);
+  const toggle = (id: number, isOpen: boolean) =>
+    setOpen((before) => new Set(isOpen ? [...before].filter((one) => one !== id) : [...before, id]));
+  const compare = async (task: Task, before: Task) => {
+    setShown(await difference(task, before));
+    return "";
+  };
+  return (
+    <>
+      <Table id="list_stored" label="tasks" heads={["task", "model", "description", "added_at", "commands"]}>
+        {versionsOf(tasks).flatMap((versions) => {
+          const first = versions[0];
+          const isOpen = first !== undefined && open.has(first.id);
+          return (isOpen ? versions : versions.slice(0, 1)).map((task, index) => (
+            <Row key={task.id} task={task} changed={changed} before={versions[index + 1]} compare={compare}>
+              {index === 0 && versions.length > 1 && (
+                <Versions count={versions.length - 1} open={isOpen} onToggle={() => toggle(task.id, isOpen)} />
+              )}
+            </Row>
+          ));
+        })}
+      </Table>
+      {shown !== null && <Difference id="version_difference" text={shown} />}
+    </>
+  );
+}
+
+function Versions({ count, open, onToggle }: { count: number; open: boolean; onToggle: () => void }) {
+  const { t } = useTranslation();
+  return (
+    <button type="button" aria-expanded={open} onClick={onToggle}>
+      {open ? "▾" : "▸"} {t("older_versions", { count })}
+    </button>
+  );
+}
+
+interface RowProps {
+  task: Task;
+  before: Task | undefined; // the version before it
+  changed: () => void;
+  compare: (task: Task, before: Task) => Promise<string>;
+  children: React.ReactNode;
+}
+
+function Row({ task, before, changed, compare, children }: RowProps) {
+  const { t } = useTranslation();
+  const { id } = task;
+  return (
+    <tr data-task={id}>
+      <td>{id}</td>
+      <td>{task.model_name}</td>
+      <td>{task.description}</td>
+      <td>{dateTime(task.added_at)}</td>
+      <td className="bar">
+        <Command className="go" label={t("start_task", { id })} work={() => startTask(task)}>
+          {t("start")}
+        </Command>
+        <Command label={t("download_task", { id })} work={() => download(id)}>
+          {t("download")}
+        </Command>
+        <Command label={t("remove_task", { id })} work={() => remove(id).finally(changed)}>
+          {t("remove")}
+        </Command>
+        {before && (
+          <Command label={t("compare_versions", { id, before: before.id })} work={() => compare(task, before)}>
+            {t("difference")}
+          </Command>
+        )}
+        {children}
+      </td>
+    </tr>
+  );
+}
