@@ -187,7 +187,7 @@ nightly: setup ## what takes hours: properties with 400 examples, 100,000 schedu
 	@$(MAKE) mutants
 	@$(MAKE) mutmut
 	TMS_POWER_CUTS=30 $(PY) -m pytest tests/system/test_power_cut.py
-	TMS_EARTH=60 $(PY) -m pytest tests/system/test_earthwork.py -k killed
+	TMS_EARTH=60 $(PY) -m pytest tests/system/test_earthwork.py tests/system/test_dig_speed.py -k "killed or speed"
 	TMS_ROUNDS=50 $(PY) -m pytest tests/system/test_shared_places.py -k turns
 	@$(MAKE) replay
 	@$(MAKE) drill ROUNDS=4
