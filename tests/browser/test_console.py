@@ -456,6 +456,12 @@ def test_the_site_shows_place_and_arm(page: Page, address: str, mesh: Mesh) -> N
     assert len(points.split()) == 4
 
 
+def test_the_editor_offers_the_nodes_of_the_scheduler(page: Page, address: str, mesh: Mesh) -> None:
+    page.goto(f"{address}/#editor/new")
+    page.get_by_text("zx200", exact=True).click()
+    expect(page.get_by_role("button", name="subtask_zx200_change_pose", exact=True)).to_be_visible()
+
+
 def test_the_first_page_is_small(page: Page, address: str, mesh: Mesh) -> None:
     files: list[Request] = []
     page.on("requestfinished", lambda request: None if "/api/" in request.url else files.append(request))

@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 from builtin_interfaces.msg import Time
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
+from std_msgs.msg import String
 from tms_msg_db.msg import Event, PastValues, Record, Run, Task
 from tms_msg_db.srv import GetTask, ListEvents, ListParameterHistory, ListParameters, ListRuns, ListTasks
 from tms_msg_host.msg import Process, Processes
@@ -48,6 +49,12 @@ def test_the_certificate_is_beside_the_site_file(site: Site, tmp_path: Path) -> 
 
 def test_the_way_of_a_stop_is_there_before_it_is_needed(console: Console, ros: Ros) -> None:
     wait_until(lambda: ros.node.count_clients("/zx200/rc/stop") == 1, LIMIT, "the console's way to the gateway")
+
+
+def test_the_editor_knows_the_nodes_that_the_scheduler_tells(console: Console, ros: Ros) -> None:
+    assert console.get("/api/palette")["xml"] == ""
+    ros.publisher(String, "/tms/palette", depth=1, latched=True).publish(String(data="<root/>"))
+    wait_until(lambda: console.get("/api/palette")["xml"] == "<root/>", LIMIT, "the palette has come")
 
 
 def test_state_shows_what_is_published(console: Console, ros: Ros) -> None:

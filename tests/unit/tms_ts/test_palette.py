@@ -18,6 +18,15 @@ def test_every_custom_node_is_in_it() -> None:
     assert {"LeafNodeZx200", "KeepRunningUntilFlgup", "WaitForClick"} <= set(ids)
 
 
+def test_the_editor_is_told_of_builtin_nodes_too() -> None:
+    entries = etree.fromstring(palette(builtin=True)).findall("TreeNodesModel/*[@ID]")
+    builtin = {entry.get("ID") for entry in entries if entry.get("builtin") == "true"}
+    assert builtin == {name for name, cls in registry().items() if cls.builtin}
+    assert {entry.get("ID") for entry in entries} - builtin == {
+        entry.get("ID") for entry in PALETTE.iter() if entry.get("ID")
+    }
+
+
 def test_an_entry_has_category_ports_defaults_and_texts() -> None:
     entry = PALETTE.find("TreeNodesModel/Action[@ID='LeafNodeIc120']")
     assert entry is not None

@@ -104,6 +104,17 @@ def test_templates(client: Client, site_client: FakeSiteClient) -> None:
     assert client.post("/api/templates", json={"name": "", "xml": XML}).status_code == 422
 
 
+def test_what_the_editor_draws_with(client: Client, site_client: FakeSiteClient) -> None:
+    site_client.palette = "<root/>"
+    palette = client.get("/api/palette").json()
+    assert palette["xml"] == "<root/>"
+    [machine] = palette["machines"]
+    assert (machine["name"], machine["model"]) == ("zx200", "zx200")
+    assert "subtask_zx200_change_pose" in machine["subtasks"]
+    assert client.get("/api/templates/Dig").json() == {"xml": XML}
+    assert site_client.calls == [("template", "Dig")]
+
+
 def test_runs_and_events(client: Client, site_client: FakeSiteClient) -> None:
     assert client.get("/api/runs?limit=5").json()[0]["reason"]["text"]["en"] == "pose out of reach"
     assert client.get("/api/runs/r-1/events?after=6&limit=2").json()[0]["number"] == 7

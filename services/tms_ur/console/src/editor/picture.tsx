@@ -12,6 +12,7 @@ import { EditBox, type EditBoxNode } from "./edit_box";
 const KINDS = { edit: EditBox };
 const FIT = { maxZoom: 1, minZoom: 0.3, padding: 0.1 };
 const SMALL = 12; // nodes
+const LEGIBLE = 0.6; // zoom at which labels can be read
 
 interface Props {
   boxes: EditBoxNode[];
@@ -97,7 +98,7 @@ function useShown(place: Placed<{ path: string }> | undefined) {
     const [left, top] = [x * view.zoom + view.x, y * view.zoom + view.y];
     const inside = left >= 0 && top >= 0 && left + WIDTH * view.zoom <= width && top + HEIGHT * view.zoom <= height;
     if (!inside) {
-      flow.setCenter(x + WIDTH / 2, y + HEIGHT / 2, { zoom: view.zoom });
+      flow.setCenter(x + WIDTH / 2, y + HEIGHT / 2, { zoom: Math.max(LEGIBLE, view.zoom) });
     }
   }, [x, y, width, height, flow, ready]);
 }
