@@ -39,11 +39,11 @@ export function Attempts({ journal, count, now, node }: Props) {
 function Try({ attempt, now, journal }: { attempt: Attempt; now: number; journal: Journal }) {
   const { t } = useTranslation();
   const { begin, end, state } = attempt;
+  const word = state === "idle" ? "halted" : WORDS[state];
   const reason = state === "failure" ? said(journal.events[attempt.event]?.reason) : "";
   return (
     <li>
-      {clock(new Date(begin).toISOString())} {duration(Math.max(0, (end ?? now) - begin) / 1000)}{" "}
-      {t(state === "idle" ? "halted" : WORDS[state])}
+      {clock(new Date(begin).toISOString())} {duration(Math.max(0, (end ?? now) - begin) / 1000)} {t(word)}
       {reason && <div>{reason}</div>}
     </li>
   );
