@@ -39,6 +39,7 @@ export function Attempts({ journal, count, now, node }: Props) {
 function Try({ attempt, now, journal }: { attempt: Attempt; now: number; journal: Journal }) {
   const { t } = useTranslation();
   const { begin, end, state } = attempt;
+  const word = state === "idle" ? "halted" : WORDS[state];
   const reason = state === "failure" ? said(journal.events[attempt.event]?.reason) : "";
   const word = state === "idle" ? "halted" : WORDS[state];
   return (
