@@ -293,7 +293,6 @@ def test_the_newest_value_is_written_when_the_store_returns(sensing: Sensing) ->
     sensing.until(lambda: sensing.values("zx200/target")["x"] == 99.0, "the newest value")
 
 
-@pytest.mark.timeout(420)
 def write_all(
     writer: int, sensing: Sensing, left: Iterator[int], lock: threading.Lock, acknowledged: dict[str, int], until: float
 ) -> None:
@@ -317,6 +316,7 @@ def write_all(
             time.sleep(0.05)
 
 
+@pytest.mark.timeout(420)
 def test_acknowledged_writes_outlive_the_death_of_store_and_database(sensing: Sensing) -> None:
     """10 000 writes over 20 records from 4 writers, while store and database are killed again and again."""
     acknowledged: dict[str, int] = {}
