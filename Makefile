@@ -126,7 +126,7 @@ restart: setup ## restart one process (P=name)
 test: setup ## all tests that a laptop can run
 	@DOCKER=$(DOCKER) sh deploy/system-packages.sh test
 	@$(NPM) test
-	$(PY) -m pytest -n 4 --dist loadfile --no-loadscope-reorder tests  # some of them wait more than they work
+	$(PY) -m pytest -n 3 --dist loadfile --no-loadscope-reorder tests  # for two cores: some of them wait
 
 test-fast: setup ## unit, contract and conformance tests: no ROS processes, two minutes (WORKERS=2)
 	@DOCKER=$(DOCKER) sh deploy/system-packages.sh test

@@ -316,12 +316,12 @@ def write_all(
             time.sleep(0.05)
 
 
-@pytest.mark.timeout(420)
+@pytest.mark.timeout(620)
 def test_acknowledged_writes_outlive_the_death_of_store_and_database(sensing: Sensing) -> None:
     """10 000 writes over 20 records from 4 writers, while store and database are killed again and again."""
     acknowledged: dict[str, int] = {}
     left = iter(range(10_000))
-    deadline = time.monotonic() + 300
+    deadline = time.monotonic() + 500
     for writer in range(4):
         for one in range(5):
             sensing.set(f"w/{writer}_{one}", {"n": 0}, type="dynamic", create=True)
