@@ -41,7 +41,6 @@ function Try({ attempt, now, journal }: { attempt: Attempt; now: number; journal
   const { begin, end, state } = attempt;
   const word = state === "idle" ? "halted" : WORDS[state];
   const reason = state === "failure" ? said(journal.events[attempt.event]?.reason) : "";
-  const word = state === "idle" ? "halted" : WORDS[state];
   return (
     <li>
       {clock(new Date(begin).toISOString())} {duration(Math.max(0, (end ?? now) - begin) / 1000)} {t(word)}
