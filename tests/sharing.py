@@ -16,7 +16,8 @@ TESTS = Path(__file__).resolve().parent
 MESH, BROWSER_MESH = "the mesh of the test run", "the mesh of the test run, with a browser"
 PROCESSES = ("tests/browser/", "tests/docker/", "tests/replay/test_replay", "tests/ros/", "tests/system/")
 LONGEST = (
-    "test_receipts", "test_earthwork", "test_every_subtask", "test_shared_places", "test_v6_tasks", "test_several_losses", "test_power_cut",
+    "test_receipts", "test_earthwork", "test_every_subtask", "test_shared_places",
+    "test_v6_tasks", "test_several_losses", "test_power_cut",
     "test_areas", "test_losses", "test_official_tasks", "test_sensing", "test_mc", "test_login", "test_mc_losses",
     "test_readme", "test_stand_in", "test_rp_sim", "test_leaf_forms", "test_ur_crowd",
     "test_version6_planner", "test_stop", "test_refusals", "test_faults", "test_made_up",

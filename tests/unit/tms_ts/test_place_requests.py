@@ -5,6 +5,7 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from tms_msg_areas.srv import AskPlaces
 
 from tms_places.reasons import NoPlace
 from tms_reason.errors import RosError
@@ -27,13 +28,14 @@ class Keeper:
         self.app: Any = SimpleNamespace(ros=ros, stopping=threading.Event())
         self.requests = PlaceRequests(self.app)
 
-    def _ask(self, _ros: Any, _kind: Any, name: str, request: Any, _limit: float) -> None:
+    def _ask(self, _ros: Any, _kind: Any, name: str, request: Any, _limit: float) -> Any:
         self.away -= 1
         if self.away >= 0:
             raise RosError(NoServer("tms:db", name, 3.0))
         if "rood" in request.places:
             raise RosError(NoPlace("rood", ("road",)), "NO_PLACE")
         self.heard.append(request)
+        return AskPlaces.Response(revision=len(self.heard))
 
     def send(self) -> None:
         self.steps[0]()
