@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from tms_cli import live, session
 from tms_cli.reasons import BeforeThat
 from tms_cli.words import say
-from tms_config.clock import unix_time
+from tms_config.clock import monotonic, sleep, unix_time
 from tms_reason.errors import TmsError
 
 if TYPE_CHECKING:
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from tms_ros.node import Ros
 
 WIDEST = 100  # letters of a document in a list
+PATIENCE, PAUSE = 30.0, 0.5  # s that a load waits for a store that is away or stalls, and between two tries
 
 
 def source() -> str:
@@ -66,12 +67,29 @@ def load_file(node: "Ros", file: Path) -> dict[str, list[str]]:
             done["unchanged"].append("/".join(key))
             continue
         try:
-            more: dict[str, Any] = {"type": record.type, "description": record.description, "max_age": record.max_age}
-            created = write(node, key, record.values, create=True, **more)
+            created = _put(node, record)
         except TmsError as error:
             raise TmsError(BeforeThat(error.reason, summary(done)), error.code) from error
         done["created" if created else "changed"].append("/".join(key))
     return done
+
+
+def _put(node: "Ros", record: "Record") -> bool:
+    """Write a record whole; whether it was made. A store that is away is waited for: twice written is as good as once.
+
+    Raises:
+        TmsError: the record was refused, or the store stays away.
+    """
+    key = (record.model_name, record.record_name)
+    more: dict[str, Any] = {"type": record.type, "description": record.description, "max_age": record.max_age}
+    until = monotonic() + PATIENCE
+    while True:
+        try:
+            return write(node, key, record.values, create=True, **more)
+        except TmsError as error:
+            if error.code != "STORE_DOWN" or monotonic() > until:
+                raise
+        sleep(PAUSE)
 
 
 def _says(stored: "Message", wanted: "Record") -> bool:

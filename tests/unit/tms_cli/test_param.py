@@ -9,7 +9,7 @@ import yaml
 from tms_msg_db.msg import Record
 from tms_msg_db.srv import GetParameter, ListParameters, SetParameter
 
-from tms_cli import record_words
+from tms_cli import record_words, stored_records
 from tms_cli.commands import param
 from tms_machine.values import from_parameters, to_parameters
 from tms_reason.errors import DbError, TmsError
@@ -152,6 +152,24 @@ def test_a_load_that_is_refused_says_how_far_it_got(mesh, tms, tmp_path: Path) -
     assert str(tms(param.command, "load", tmp_path / "r.yaml").exception) == (
         "in use (before that: 1 created, 0 changed, 0 unchanged)"
     )
+
+
+@pytest.mark.parametrize(("patience", "code"), [(60.0, 0), (-1.0, 1)])
+def test_a_load_waits_for_a_store_that_is_away(mesh, tms, tmp_path, monkeypatch, patience: float, code: int) -> None:
+    monkeypatch.setattr(stored_records, "PATIENCE", patience)
+    monkeypatch.setattr(stored_records, "PAUSE", 0.0)
+    away = [DbError(Foreign("away"), "STORE_DOWN")] * 3
+
+    def answer(**_: Any) -> SetParameter.Response | TmsError:
+        return away.pop() if away else SetParameter.Response(created=True)
+
+    mesh.answers["/tms/db/list_parameters"] = ListParameters.Response()
+    mesh.answers["/tms/db/set_parameter"] = answer
+    (tmp_path / "r.yaml").write_text(FILE)
+    end = tms(param.command, "load", tmp_path / "r.yaml", "--json")
+    assert end.exit_code == code
+    if not code:
+        assert json.loads(end.stdout)["created"] == ["zx200/same", "zx200/other_type", "zx200/new"]
 
 
 def test_export_can_be_loaded_again(mesh, tms, tmp_path: Path) -> None:
