@@ -27,6 +27,12 @@ class SitePlaces:
         """The places of the site; None while nobody has told of them."""
         return None if self._told is None else tuple(self._told)
 
+    @property
+    def runs(self) -> frozenset[str]:
+        """Runs that hold a place or wait for one."""
+        told = (self._told or {}).values()
+        return frozenset({one.run for one in told} | {each.run for one in told for each in one.queue}) - {""}
+
     def answered(self, revision: int) -> None:
         """The keeper has taken what was asked: only what it tells from now on counts."""
         self._since = revision

@@ -54,7 +54,7 @@ def _parts(app: App) -> Parts:
     hosts, disk = Hosts(ros), GroupCommit(app.log)
     journal, records = Journal(ros, app.log, disk, site.state), Records(site.state, disk)
     records.check()
-    places = PlaceRequests(app)
+    places = PlaceRequests(app, records.names)
     interrupted = Interrupted(app, journal, records, places)
     gateways = Gateways(app, interrupted.receipt)
     monitors = Monitors(app.log, site.file.groot.bind, site.file.ports.groot)

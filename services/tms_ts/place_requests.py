@@ -23,8 +23,11 @@ LOOK = 0.05  # s between looks whether something is to be told
 class PlaceRequests:
     """All requests of this scheduler."""
 
-    def __init__(self, app: App) -> None:
-        self._app = app
+    def __init__(self, app: App, recorded: Callable[[], Iterable[str]]) -> None:
+        """`recorded`: the runs that have not ended, or whose end is to be told yet; it may wait for the disk."""
+        self._app, self._recorded = app, recorded
+        self._looked = False  # for runs that an earlier scheduler has left
+        self._runs: set[str] = set()  # that have wanted places before that
         self._waiting: SimpleQueue[tuple[AskPlaces.Request, Answer[None], Callable[[], None]]] = SimpleQueue()
         self._wakes: list[Callable[[], None]] = []  # of runs that look at places
         self.site = SitePlaces(app.ros, self._changed)
@@ -33,6 +36,8 @@ class PlaceRequests:
     def put(self, request: AskPlaces.Request, wake: Callable[[], None] = lambda: None) -> Answer[None]:
         """Tell the keeper; `wake` is called when it has answered."""
         answer: Answer[None] = Answer()
+        if not self._looked:
+            self._runs.add(request.run)
         self._waiting.put((request, answer, wake))
         return answer
 
@@ -54,7 +59,16 @@ class PlaceRequests:
         for wake in self._wakes:
             wake()
 
+    def _free_left(self) -> None:
+        """Free what runs want that are over: the scheduler was killed before it could tell."""
+        self._looked = True
+        for run in sorted(self.site.runs - self._runs - set(self._recorded())):
+            self._app.log.warning("places_freed", run=run)
+            self.put(AskPlaces.Request(run=run, hold=False))
+
     def _send(self) -> None:
+        if not self._looked and self.site.names is not None:
+            self._free_left()
         while not self._waiting.empty():
             request, answer, wake = self._waiting.get()
             why = self._told(request)

@@ -138,6 +138,10 @@ class Records:
                 found.append(read(path))
         return [past for past in found if past.header is not None]
 
+    def names(self) -> list[str]:
+        """The ids of the runs of `past`."""
+        return [past.header.run_id for past in self.past() if past.header is not None]
+
     def find(self, run_id: str) -> InterruptedRun | None:
         """The interrupted run called `run_id`; the beginning of the id is enough when only one fits."""
         hits = [past for past in self.past() if past.header and past.header.run_id.startswith(run_id)]

@@ -28,6 +28,7 @@ pytestmark = [pytest.mark.ros, pytest.mark.timeout(600)]
 MACHINE = "ic120"
 FRONT, REAR = 2.0, 3.6  # m, from its base
 HISTORIES = int(os.environ.get("TMS_AREA_HISTORIES", "5"))
+HELD_UP = 2  # drives that a busy PC may end
 TRIES, DRIVES, DRIVE = 15, 2, 8.0  # goals of a history at most, drives that are enough, s of each
 Corners = list[tuple[float, float]]
 
@@ -177,6 +178,10 @@ def test_a_machine_that_stands_outside_comes_in_and_only_that(rig: Rig) -> None:
     rig.mesh.tms("rearm", MACHINE, "--escape", "--yes", "--by", "a person")
     assert "NOT_FURTHER_IN" in rig.ahead(here, 0.0).result.error_msg
     inside = rig.ahead(here, 3.0)  # at a slow speed, or it would be stopped
+    for _ in range(HELD_UP):
+        if "AREAS_LATE" in inside.result.error_msg:  # this PC did not look in time
+            rig.mesh.tms("rearm", MACHINE, "--escape", "--yes", "--by", "a person")
+            inside = rig.ahead(here, 3.0)
     assert inside.outcome is Outcome.SUCCEEDED, inside.result
     wait_until(lambda: not rig.state.moving, 20, "it stands")
     again = rig.mesh.tms("rearm", MACHINE, "--escape", "--yes", "--by", "a person", expect=1)

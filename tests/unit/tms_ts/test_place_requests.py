@@ -5,6 +5,8 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
+import structlog
+from tms_msg_areas.msg import Place, PlaceRequest, Places
 from tms_msg_areas.srv import AskPlaces
 
 from tms_places.reasons import NoPlace
@@ -18,15 +20,17 @@ class Keeper:
     """Is away for the first calls, and knows one place."""
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch, away: int = 0) -> None:
-        self.away, self.heard, self.tell = away, list[Any](), None
+        self.away, self.heard = away, list[Any]()
+        self.tell: Any = None  # what the keeper tells
         monkeypatch.setattr(place_requests, "ask", self._ask)
         monkeypatch.setattr(place_requests, "ASK_AGAIN", 0.0)
         self.steps: list[Any] = []
         ros = SimpleNamespace(
-            poll_in_thread=lambda _period, step, _name: self.steps.append(step), subscribe=lambda *_, **__: None
+            poll_in_thread=lambda _period, step, _name: self.steps.append(step),
+            subscribe=lambda _type, _name, heard, **_: setattr(self, "tell", heard),
         )
-        self.app: Any = SimpleNamespace(ros=ros, stopping=threading.Event())
-        self.requests = PlaceRequests(self.app)
+        self.app: Any = SimpleNamespace(ros=ros, stopping=threading.Event(), log=structlog.get_logger())
+        self.requests = PlaceRequests(self.app, lambda: ["interrupted"])
 
     def _ask(self, _ros: Any, _kind: Any, name: str, request: Any, _limit: float) -> Any:
         self.away -= 1
@@ -70,4 +74,20 @@ def test_a_run_that_is_over_wants_nothing_nor_do_goals_of_its_machines(monkeypat
     assert len(woken) == 1, "it looks at places no more"
     assert [(one.machine, one.run, one.hold) for one in keeper.heard] == [
         ("", "run-1", False), ("a", "", False), ("b", "", False)
+    ]  # fmt: skip
+
+
+def test_what_a_run_wanted_that_ended_under_an_earlier_scheduler_is_freed(monkeypatch: pytest.MonkeyPatch) -> None:
+    keeper = Keeper(monkeypatch)
+    RunPlaces(keeper.requests, "new", lambda: None).hold("b", "road")
+    keeper.send()
+    queue = [PlaceRequest(machine="b", run="new"), PlaceRequest(machine="c", run="ended too")]
+    held = [Place(name="road", holder="a", run="ended", queue=queue), Place(name="yard", holder="d", run="interrupted"),
+            Place(name="gate", holder="e")]  # fmt: skip
+    keeper.tell(Places(revision=1, places=held))
+    keeper.send()
+    keeper.tell(Places(revision=2, places=held))
+    keeper.send()
+    assert [(one.machine, one.run, one.hold) for one in keeper.heard] == [
+        ("b", "new", True), ("", "ended", False), ("", "ended too", False)
     ]  # fmt: skip
