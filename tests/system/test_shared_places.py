@@ -54,7 +54,7 @@ def mesh(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Mesh]:
         folder = made.site.with_suffix("") / "areas"
         folder.mkdir(parents=True)
         (folder / "yard.geojson").write_text(document())
-        made.tms("up", expect=None)
+        made.tms("up", "--no-wait")  # without areas it is not ready
         try:
             enable = ("areas", "enable", "--yes", "--by", "a person")
             wait_until(lambda: made.tms(*enable, expect=None).returncode == 0, 90, "both gateways serve", every=CLI)

@@ -16,7 +16,18 @@ from tms_cli.drill.operasim import OperaSim
 from tms_cli.drill.plan import NONE, TROUBLES, TS, How, StopScenario, Trial
 from tms_cli.drill.record import TrialRecording
 from tms_cli.drill.stop_observer import StopObserver
-from tms_cli.drill.verdict import AFTER, BY_ITSELF, GOES_ON, HUNG, UNPROVEN, Row, TrialFacts, judge, takes_gateway
+from tms_cli.drill.verdict import (
+    AFTER,
+    BY_ITSELF,
+    GOES_ON,
+    HUNG,
+    UNPROVEN,
+    UNTOLD,
+    Row,
+    TrialFacts,
+    judge,
+    takes_gateway,
+)
 from tms_cli.drill.work import Work
 from tms_cli.reasons import DoesNotMove, NobodySays
 from tms_config.clock import sleep, unix_time
@@ -218,7 +229,7 @@ class Hand:
             if trial.stop.moves and not self.work.lost and record.goal_after(proven) < math.inf:
                 return GOES_ON
             sleep(CHECK_PERIOD)
-        return HUNG
+        return UNTOLD if self.work.untold else HUNG
 
     def _last_words(self, trial: Trial, begun: float) -> TrialRecording:
         """The record at the end: a restarted gateway publishes its latch a moment later."""

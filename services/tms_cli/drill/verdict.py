@@ -22,6 +22,7 @@ EXTRA = 3.0  # s beyond dead time and braking in which a machine without a fault
 JUMP = 0.5  # s from a release of its emergency stop in which a machine of OperaSim-PhysX that stands may jump
 BY_ITSELF = 1.5  # s after the hit within which a motion that reaches its goal counts as not stopped
 GOES_ON, INTERRUPTED, HUNG = "goes on", "interrupted", "hung"
+UNTOLD = "not told"  # the database gave no answer to the last
 LEFT_OUT = "left out"
 
 
@@ -122,6 +123,8 @@ def judge(facts: TrialFacts) -> Row:
 def void(facts: TrialFacts) -> str:
     """Why no stop was due, or the motion was not recorded; empty for a valid trial."""
     record = facts.record
+    if facts.outcome == UNTOLD:
+        return "the database did not tell how its run ended"
     before = [state for state in record.states if state.at < facts.begun][-1:]
     if any(state.latch or state.hold for state in before):
         return f"it was stopped before: {before[0].latch or before[0].hold}"

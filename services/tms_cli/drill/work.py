@@ -53,6 +53,7 @@ class Work:
         self._call: Call[ExecuteTask.Result, ExecuteTask.Feedback] | None = None
         self._run = ""
         self.lost = False  # its scheduler was lost, so that only the history has its end
+        self.untold = False  # the database gave no answer when it was asked last
         self.subtask = next(iter(self._subtasks.values()))  # the process behind the motion
 
     def be(self, fault: str) -> None:
@@ -70,7 +71,7 @@ class Work:
         """
         self.arm()
         self._peer.wait_ready(SERVER_LIMIT)
-        self._run, self.lost = "", False
+        self._run, self.lost, self.untold = "", False, False
         goal = ExecuteTask.Goal(task_id=self._task, ignore_warnings=True)
         self._call = self._peer.send(goal, on_feedback=self._received)
 
@@ -124,7 +125,9 @@ class Work:
             return INTERRUPTED if self.lost else ""
         try:
             run = recent(self._node, self._run)
+            self.untold = False
         except TmsError:
+            self.untold = True
             return ""  # the database may have been hit
         return run.state if run is not None and has_ended(run) else ""
 

@@ -8,7 +8,7 @@ import pytest
 
 from tms_cli.drill.plan import NONE, RC, TS, How, StopScenario, Trial
 from tms_cli.drill.record import Goal, MotionSample, Receipt, ReportedState, TrialRecording, sample_of
-from tms_cli.drill.verdict import GOES_ON, Row, TrialFacts, judge
+from tms_cli.drill.verdict import GOES_ON, UNTOLD, Row, TrialFacts, judge
 from tms_config.models import Still
 
 HIT = 1000.0  # s since 1970
@@ -214,6 +214,12 @@ def test_a_truth_with_a_gap_proves_nothing_but_a_lie() -> None:
     found.record.truth[:] = [one for one in truth((0.0, 9.0)) if not 3.0 < one.at - HIT < 5.0]
     found.record.receipts.append(receipt())
     assert judge(found).false_receipt and not judge(found).void
+
+
+def test_an_end_that_the_database_did_not_tell_proves_nothing_but_a_lie() -> None:
+    assert judge(facts(truth((0.0, 2.0)), receipt(seconds=3.0), outcome=UNTOLD)).void.startswith("the database")
+    lied = judge(facts(truth((0.0, 9.0)), receipt(), outcome=UNTOLD))
+    assert lied.false_receipt and not lied.void
 
 
 def test_a_goal_that_began_after_the_hit_was_stopped_too() -> None:
