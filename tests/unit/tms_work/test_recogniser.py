@@ -5,6 +5,7 @@ from typing import Any
 
 import pytest
 
+from tms_work import sums
 from tms_work.cycle import Cycle
 from tms_work.recogniser import Recogniser
 from tms_work.ways import EXCAVATOR
@@ -145,6 +146,22 @@ def test_a_bucket_emptied_in_a_silence() -> None:
     (one,) = seen(tape.go(5, under="ic120_1"))
     assert (one.loose, one.into) == (pytest.approx(0.8), "ic120_1")
     assert one.ended_at.timestamp() == pytest.approx(end) and one.seconds < 10
+
+
+def test_what_nobody_saw_is_in_no_part() -> None:
+    """A silence while it carries is in its cycle; one in which it was emptied is in the next one."""
+    tape = Tape().go(5, 0.8, cuts=True).go(2, swing=0.5)
+    tape.time += 30
+    tape.go(2, swing=0.5)
+    tape.time += 20
+    tape.loose = 0.0
+    first, second = seen(bucket(tape.go(3, swing=-0.5), 0.6))
+    assert (first.loose, second.loose) == pytest.approx((0.8, 0.6))
+    assert (first.unseen, second.unseen) == pytest.approx((30.2, 20.2))
+    assert second.parts["swing_back"] < 4.0, "the silence is no part of it"
+    assert first.parts == pytest.approx({"dig": 5.0, "swing_loaded": 3.8})
+    found = sums.total([first, second])
+    assert found.unseen == pytest.approx(50.4) and found.digging < 30.0, "figures an hour are of what was seen"
 
 
 def test_a_rest_after_a_silence_is_no_bucket() -> None:
