@@ -8,8 +8,8 @@ A cycle ends when the load is out, so it counts at once; the way back belongs to
 - A run that ends and a clock that goes back end a cycle, and so does a silence in which soil was poured; it counts if
   soil was moved. The load stays in the bucket, and counts where it is dumped. Work without a run is not counted.
 - The time of a silence is in no part: it is told as unseen.
-- An estimated load does not grow in a silence. If it has, a ground of an earlier time was brought back, and what is in
-  the bucket has been counted already.
+- An estimated load does not grow while we are away. If it has, a ground of an earlier time was brought back, and what
+  is in the bucket has been counted already. What a PC that has much to do tells late has happened.
 """
 
 import math
@@ -24,7 +24,7 @@ from tms_work.ways import Way
 
 STEP = 0.2  # s between two samples that are taken at least: loads are told with noise
 GAP = 5.0  # s of silence in which anything may have happened
-LOST = 1.0  # s of silence, after which estimates of loads begin anew where they were (tms_soil.earth.GAP)
+LOST = 1.0  # s, that a restart takes at least
 FLOWS = 0.005  # of the heaped volume in a second; what is slower is noise, or trickles
 LEAST = 0.02  # of the heaped volume, below which nothing is carried
 SPILL = 0.25  # of the load, that may fall out on the way
@@ -53,6 +53,7 @@ class Recogniser:
         """`heaped`: what its bucket or vessel holds [m3], loose."""
         self._machine, self._way, self._heaped = machine, way, heaped
         self._state = State()
+        self._restored = False  # and nothing was taken since
 
     @property
     def kind(self) -> Kind:
@@ -81,6 +82,7 @@ class Recogniser:
             ValueError: it is none; then nothing has changed.
         """
         self._state = State.model_validate(state)
+        self._restored = True
 
     def forget(self) -> None:
         """Drop the cycle that is not over, as nobody knows what has become of the load; the next number stays."""
@@ -99,8 +101,9 @@ class Recogniser:
         if -GAP <= elapsed < STEP - 1e-6:
             return []
         self._state.before = now
-        silent = before is not None and not 0.0 < elapsed <= LOST
+        silent = self._restored and not 0.0 < elapsed <= LOST
         counted = before is not None and silent and not now.estimated and self._is_back(before, now)
+        self._restored = False
         cycles = [] if before is None else self._end(before.time) if counted else self._through(before, now, elapsed)
         draft = self._state.draft
         if now.run and (draft is None or draft.run != now.run):

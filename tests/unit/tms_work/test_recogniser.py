@@ -174,11 +174,25 @@ def test_a_rest_after_a_silence_is_no_bucket() -> None:
 
 def test_a_load_that_is_back_after_a_restart_was_counted() -> None:
     tape = bucket(Tape(), 0.8)
+    until = len(tape.samples)
     tape.time += 3
     tape.loose = 0.7
     tape.go(2, swing=0.5).go(1, 0.0, swing=0.5).go(1, swing=0.5)
     tape.go(100, 0.3).go(4, swing=0.5).go(2, 0.0)
-    assert [one.loose for one in seen(bucket(tape, 0.6))] == pytest.approx([0.8, 0.3, 0.6])
+    samples = bucket(tape, 0.6).samples
+    before, after = excavator(), excavator()
+    found = taken(before, samples[:until])
+    after.restore(json.loads(json.dumps(before.state())))
+    assert [one.loose for one in found + taken(after, samples[until:])] == pytest.approx([0.8, 0.3, 0.6])
+
+
+def test_samples_that_come_seldom_count_each_bucket() -> None:
+    """Machines that live fast, on a PC that has much to do."""
+    tape = Tape()
+    for _ in range(3):
+        tape.go(6, 0.8, cuts=True).go(4, swing=0.5).go(3, 0.0, under="ic120_1").go(5, swing=-0.5)
+    found = taken(excavator(), tape.samples[::7])  # 1.4 s
+    assert [one.loose for one in found] == pytest.approx([0.8] * 3, abs=0.01)
 
 
 def test_a_bucket_filled_and_emptied_in_silences_that_was_weighed() -> None:
