@@ -94,6 +94,7 @@ class Blade(Settings):
     link: str
     edge: tuple[float, float]  # m, x and z
     width: float = Field(gt=0)  # m
+    force: float = Field(gt=0)  # N that the tracks can push it with
     origin: str = Field(min_length=1)  # where the figures come from
 
 

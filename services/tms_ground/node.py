@@ -14,8 +14,9 @@ from tms_ground.counting import begin, counted
 from tms_ground.delivery import Delivery
 from tms_ground.designs import surface_of
 from tms_ground.duties import Duties
+from tms_ground.going_on import go_on
 from tms_ground.heights import HeightsServer
-from tms_ground.reasons import GroundNotKept, GroundOther, WorkOther
+from tms_ground.reasons import GroundNotKept
 from tms_ground.seen import Seen
 from tms_ground.settings import needed, soils_of
 from tms_ground.snapshots import Snapshots
@@ -27,8 +28,9 @@ from tms_runtime.app import App
 
 PERIOD = 0.04  # s between two looks at what has come: the period of most joint states
 WAITING = 250  # joint states of a machine that may wait, 10 s: if one is lost, what its bucket did then is lost
-TELLS = 0.2  # s between two messages of a volume
-SAVES = 60.0  # s between two files of the ground: after a power cut so much is lost at most
+TELLS = 0.2  # s of the machines between two messages of a volume: who waits for one loses little time at any speed
+SAVES = 60.0  # s of the machines between two files of the ground: after a power cut so much is lost at most
+EARLY = 0.01  # s; looks are so far apart only nearly
 CYCLES = 2.0  # s between two looks for full buckets and finished cycles, with which the ground is saved at once
 
 REPORTS = Counter("tms_ground_reports_total", "Reports of machines that were taken", ["machine"])
@@ -77,10 +79,12 @@ class Keeper:
         self._told = 0.0
         self.lock = threading.Lock()  # between the threads that look, save and answer
         self._saving = threading.Lock()  # of those that save
-        self._go_on()
+        self._missed = go_on(watch, app.log, unix_time())
         ERROR.set_function(self._mass_error)
         app.ros.poll_in_thread(PERIOD, self.look, "ground")
-        app.ros.poll_in_thread(SAVES, self.save, "ground_file")
+        app.ros.poll_in_thread(
+            SAVES / max(1.0, self._speed), self.save, "ground_file"
+        )  # and what a crash has told again
         app.ros.poll_in_thread(CYCLES, self.deliver, "cycles")
         app.on_stop(self.save)
 
@@ -91,7 +95,7 @@ class Keeper:
         for name in self._machines:
             self._take(name)
         now = monotonic()
-        if now - self._told >= TELLS:
+        if now - self._told >= TELLS / self._speed - EARLY:
             self._told = now
             with self.lock:
                 self.teller.tell(stamp)
@@ -101,6 +105,9 @@ class Keeper:
         if place is None or (joints is None and self._listener.has_joints(name)):
             return  # it has not told enough
         now, angles = monotonic() * self._speed, {} if joints is None else joints.angles
+        if (seen := self._missed.pop(name, None)) is not None:
+            with self.lock:
+                self._watch.miss(name, (unix_time() - seen) * self._speed, angles, place)
         before = self._times.get(name, now)
         self._times[name] = now
         told = self._listener.new_joints(name) or [angles]
@@ -109,34 +116,15 @@ class Keeper:
                 begun = monotonic()
                 self._watch.take(name, before + (now - before) * number / len(told), one, place)
                 UPDATE.observe(monotonic() - begun)
+                late = (now - before) * (1 - number / len(told)) / self._speed
+                counted(self._watch.count(name, unix_time() - late, one, place, self._duties.of(name)))
             REPORTS.labels(name).inc()
         with self.lock:
-            counted(self._watch.count(name, unix_time(), angles, place, self._duties.of(name)))
             self.teller.feel(name)
-
-    def _go_on(self) -> None:
-        """Begin with the kept ground; one that cannot be read is put aside."""
-        file = self._watch.file
-        try:
-            if self._watch.load():
-                self._log.info("ground_goes_on", file=str(file))
-                self._work_goes_on(loads=True)
-            elif file.exists():
-                self._work_goes_on(loads=False)
-                self._log.warning("ground_begins_anew", reason=GroundOther(str(durable.set_aside(file))))
-        except (OSError, ValueError) as error:
-            why = GroundNotKept(str(durable.set_aside(file)), str(error))
-            self._log.warning("ground_begins_anew", reason=why)
 
     def _mass_error(self) -> float:
         with self.lock:
             return self._watch.mass_error
-
-    def _work_goes_on(self, loads: bool) -> None:
-        try:
-            self._watch.load_work(loads)
-        except ValueError as error:
-            self._log.warning("work_begins_anew", reason=WorkOther(str(error)))
 
     def deliver(self) -> None:
         """Keep full buckets, and finished cycles; send these once they are on the disk."""
@@ -147,13 +135,19 @@ class Keeper:
     def save(self) -> None:
         """Keep ground and work on the disk, if they have changed."""
         with self._saving:
+            watch, file = self._watch, str(self._watch.file)
             with self.lock:
-                content, made = self._watch.content(), self._watch.waiting.made
+                trouble, content = watch.journal.trouble, watch.content()
+                made, journal = watch.waiting.made, watch.journal.number
+            if trouble is not None:
+                self._log.error("journal_not_kept", reason=GroundNotKept(file, str(trouble.strerror)))
             if content is None:
                 return
             try:
-                durable.replace(self._watch.file, content)
-                self._watch.waiting.kept(made)
+                durable.replace(watch.file, content.ground)
+                durable.replace(watch.copy, content.work)
+                watch.waiting.kept(made)
+                watch.journal.drop(journal)
             except OSError as error:
-                self._watch.changed = True
-                self._log.error("ground_not_saved", reason=GroundNotKept(str(self._watch.file), str(error.strerror)))
+                watch.changed = True
+                self._log.error("ground_not_saved", reason=GroundNotKept(file, str(error.strerror)))

@@ -30,7 +30,18 @@ class NoSoil(Reason, text="there is no soil '{soil}' (there: {soils})", action=E
     soil: str; soils: tuple[str, ...]
 class GroundOther(Reason, text="the kept ground is one of another area or soil: it is put aside as {file}"): file: str
 class GroundNotKept(Reason, text="{file}: the ground cannot be kept there ({problem})"): file: str; problem: str
-class WorkOther(Reason, text="the kept work cannot be read, cycles begin anew ({problem})"): problem: str
+class GroundDamaged(Reason,
+    text="the kept ground cannot be read ({problem}) and is put aside as {file}: buckets and vessels count as empty, "
+    "heights are those of the newest snapshot"): file: str; problem: str
+class GroundGone(Reason,
+    text="the file of the ground is gone: buckets and vessels count as empty, "
+    "heights are those of the newest snapshot"): pass
+class GroundAway(Reason,
+    text="nobody looked at the ground for {missing}: soil that machines moved then is estimated where it can be, else "
+    "missing in the work figures (unseen)"): missing: Seconds
+class WorkLost(Reason,
+    text="the kept work cannot be read ({problem}): finished cycles that the database does not have yet are lost, the "
+    "next ones have numbers from the clock, so that they replace none"): problem: str
 class CycleLost(Reason, text="the database refuses a finished cycle for good: {why}"): why: Reason
 class CyclesMany(Reason, text="too many cycles wait for the database: the oldest {lost} of them are lost"): lost: int
 class NoOrigin(Reason, text="the file is in EPSG {epsg}, and the site file tells no ground.origin", action=EDIT_CONFIG):

@@ -38,7 +38,7 @@ class Waiting:
         """Take finished cycles; the oldest make room for them, if too many wait."""
         with self._lock:
             for one in cycles:
-                self._cycles.append(one.model_dump_json())
+                self._cycles.append(one.model_dump_json(exclude_defaults=True))
                 self._made += 1
             while len(self._cycles) > self._most:
                 self._cycles.popleft()
@@ -76,7 +76,7 @@ class Waiting:
         Raises:
             ValueError: they are none; then nothing has changed.
         """
-        found = [one.model_dump_json() for one in CYCLES.validate_json(state)]
+        found = [one.model_dump_json(exclude_defaults=True) for one in CYCLES.validate_json(state)]
         with self._lock:
             self._cycles.extend(found)
             self._made = self._kept = len(found)

@@ -1,10 +1,11 @@
 """What the machines of a site tell becomes the ground and their loads; a file keeps both over a restart."""
 
 import io
+import json
 import zipfile
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,10 +13,12 @@ from numpy.typing import NDArray
 from tms_config.clock import unix_time, utc_now
 from tms_config.models import MachineModel
 from tms_control.links import Matrix, placed
+from tms_ground.journal import MOST, Journal, Looked, Told
 from tms_ground.settings import Ground
 from tms_ground.waiting import Waiting
 from tms_ground.work import Duty, Work
 from tms_machine.frames import FramePose
+from tms_soil.absence import miss
 from tms_soil.changes import Changes
 from tms_soil.earth import GAP, Earth
 from tms_soil.evidence import Evidence
@@ -33,6 +36,14 @@ CELL = 1.0  # m, of a level ground
 LATE = 0.25  # s without joint states, after which the way of an accelerated stand-in is unknown
 TIMES, NEWEST = "evidence", "snapshot"  # names in the file
 WORK, CYCLES = "work", "cycles"  # names in the file: what recognisers remember, and cycles that wait
+JOURNAL = "journal"  # name in the file: number of the first journal that it does not hold
+
+
+class Kept(NamedTuple):
+    """What is to be on the disk."""
+
+    ground: bytes  # with all work
+    work: bytes  # the same once more: where the ground cannot be read, cycles go on with it
 
 
 def touching(models: Mapping[str, MachineModel]) -> dict[str, MachineModel]:
@@ -66,9 +77,11 @@ class GroundWatch:
         self.newest = ""  # ISO 8601: time of the newest snapshot that this ground knows; empty: of none
         self.work = Work(self.earth, self.soils, models, speed)
         self.waiting = Waiting()
-        self.file = file
+        self.file, self.copy = file, file.with_name("work.json")
+        self.journal = Journal(file.with_suffix(".journal"))
         self._stands: dict[str, tuple[tuple[float, float, float], Matrix]] = {}  # machine -> place, base_link in map
         self._begun = self.earth.mass()
+        self._first = 0  # number of the first journal that the loaded file does not hold
         self.changed = False  # since the last `content`
         self.touched = False  # since the last snapshot, by a machine
 
@@ -88,6 +101,18 @@ class GroundWatch:
             self.changed = self.touched = True
             self.changes.add(changed)
             self._evidence.add(changed, unix_time())
+        self.journal.told(Told(machine, time, dict(angles), at), not changed)
+
+    def miss(self, machine: str, seconds: float, angles: Mapping[str, float], place: FramePose) -> None:
+        """Take what a machine that stands so now [rad] did while nobody looked, for `seconds` of its time."""
+        at = place.x, place.y, place.yaw
+        rolling = self.earth.bodies[machine].rolling
+        found = miss(self.earth, machine, seconds, angles, rolling.stand(*at) if rolling else placed(*at))
+        if found.changed or found.into:
+            self.changed = self.work.filled = True  # to be kept at once, as no journal tells it
+        self.changes.add(found.changed)
+        self._evidence.add(found.changed, unix_time())
+        self.work.missed(machine, found.into)
 
     def measured(self, seen: Heights, time: float, within: float = 0.0) -> None:
         """Take heights that were measured at a time [s since 1970]; see `measuring`."""
@@ -104,6 +129,7 @@ class GroundWatch:
         cycles = self.work.take(machine, now, angles, place, duty)
         self.waiting.put(cycles)
         self.changed = self.changed or bool(cycles)
+        self.journal.looked(Looked(machine, now, duty))
         return cycles
 
     def stands(self, machine: str) -> Matrix | None:
@@ -151,25 +177,62 @@ class GroundWatch:
                 self.work.restore(_text(file[WORK]), loads)
                 self.waiting.restore(_text(file[CYCLES]))
 
+    def load_copy(self) -> None:
+        """Go on with the second copy of the work; nobody knows what has become of the loads.
+
+        Raises:
+            OSError, ValueError: it cannot be read.
+        """
+        try:
+            found = json.loads(self.copy.read_text(encoding="utf-8"))
+            self.work.restore(json.dumps(found[WORK]), loads=False)
+            self.waiting.restore(json.dumps(found[CYCLES]))
+        except (KeyError, TypeError) as error:
+            raise ValueError(str(error)) from error
+
+    def replay(self) -> dict[str, float]:
+        """Take what machines have told since the file was written; returns when each was looked at last [s since 1970].
+
+        After `load`, and before the journal is begun.
+        """
+        last: dict[str, Told] = {}
+        looked: dict[str, float] = {}
+        for line in self.journal.lines(self._first):
+            if line.machine not in self.earth.bodies:
+                continue
+            if isinstance(line, Told):
+                last[line.machine] = line
+                self.take(line.machine, line.time, line.angles, FramePose(*line.place, 0.0))
+            elif (told := last.get(line.machine)) is not None:
+                looked[line.machine] = line.now
+                self.count(line.machine, line.now, told.angles, FramePose(*told.place, 0.0), Duty(*line.duty))
+        self.changed = self.changed or bool(looked)
+        return looked
+
     def _remember(self, state: Mapping[str, Any]) -> None:
         """When the kept ground was known; files of earlier releases say nothing: then all of it counts as of now."""
         now = unix_time()
+        self._first = int(state[JOURNAL]) if JOURNAL in state else self.journal.number + 1
         times = state.get(TIMES)
         if times is None or times.shape != self._evidence.times.shape:
             self._evidence.times[:], self.newest = now, utc_now().isoformat()
         else:
             self._evidence.times[:], self.newest = np.minimum(times, now), str(state[NEWEST])
 
-    def content(self) -> bytes | None:
-        """What `file` must hold to keep ground and work; None if nothing has changed since the last call."""
-        if not self.changed:
+    def content(self) -> Kept | None:
+        """What `file` and `copy` must hold to keep ground and work; None if nothing has changed since the last call.
+
+        What is told from now on goes into another journal than what was told before.
+        """
+        if not self.changed and self.journal.size < MOST:
             return None
         self.changed = self.work.filled = False
-        out = io.BytesIO()
-        more = {TIMES: self._evidence.times, NEWEST: np.array(self.newest)}
-        work = {WORK: _bytes(self.work.state()), CYCLES: _bytes(self.waiting.state())}
-        np.savez(out, **state_of(self.earth), **more, **work)  # type: ignore[arg-type]
-        return out.getvalue()
+        self.journal.begin()
+        out, work, cycles = io.BytesIO(), self.work.state(), self.waiting.state()
+        more = {TIMES: self._evidence.times, NEWEST: np.array(self.newest), JOURNAL: np.array(self.journal.number)}
+        works = {WORK: _bytes(work), CYCLES: _bytes(cycles)}
+        np.savez(out, **state_of(self.earth), **more, **works)  # type: ignore[arg-type]
+        return Kept(out.getvalue(), f'{{"{WORK}": {work}, "{CYCLES}": {cycles}}}'.encode())
 
 
 def _bytes(text: str) -> NDArray[np.uint8]:

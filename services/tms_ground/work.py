@@ -50,6 +50,7 @@ class Work:
         self._recognisers = {name: one for name in models if (one := self._recogniser(name, models[name])) is not None}
         self.filled = False  # a bucket or vessel, since someone set this to False
         self._last: dict[str, _Swing] = {}  # machine -> when it was looked at
+        self._missed: dict[str, str] = {}  # machine whose load changed while nobody looked -> carrier that took it
 
     @property
     def kinds(self) -> dict[str, Kind]:
@@ -75,11 +76,13 @@ class Work:
         body = self._earth.bodies[machine]
         elapsed = time - before.time if before is not None else 0.0
         turn = math.remainder(angle - before.angle, math.tau) / elapsed if before is not None and elapsed > 0.0 else 0.0
+        missed = self._missed.pop(machine, None)
         load = load_of(_part(body), self._earth.grid)
         soil = "" if load.kind is None else self._soils[load.kind]
         sample = Sample(
             time, Amount(load.mass, load.bank, load.loose), duty.run, soil, place.x, place.y, duty.moves, duty.stopped,
-            swing=turn, cuts=body.digger is not None and body.digger.resistance > 0.0, under=self._under(body),
+            swing=turn, cuts=body.digger is not None and body.digger.resistance > 0.0,
+            estimated=missed is not None, under=missed or self._under(body),
         )  # fmt: skip
         carried = recogniser.carries
         cycles = [self._dated(one) for one in recogniser.take(sample)]
@@ -104,6 +107,23 @@ class Work:
                 recogniser.restore(found[name])
                 if not loads:
                     recogniser.forget()
+
+    def missed(self, machine: str, into: str) -> None:
+        """Note that a load was estimated over a time in which nobody looked, and the carrier that took it, if any."""
+        self._missed[machine] = into
+        if into:
+            self._missed.setdefault(into, "")
+
+    @property
+    def seen(self) -> float | None:
+        """When a machine that a run holds was looked at last [s since 1970]; None: no run holds one."""
+        times = [one.seen / self._speed for one in self._recognisers.values() if one.seen is not None]
+        return max(times, default=None)
+
+    def number_from(self, first: int) -> None:
+        """Give the next cycles of all machines this number: nobody knows which ones were used."""
+        for recogniser in self._recognisers.values():
+            recogniser.number_from(first)
 
     def _under(self, body: Body) -> str:
         """The carrier below a bucket."""

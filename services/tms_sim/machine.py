@@ -40,7 +40,9 @@ class StandIn:
         self.commands = JointCommands(self.arm, self._border.joints)
         self.base = Base(model.drive, start, response.get(DRIVE)) if model.drive else None
         self.navigator = Navigator(self.base) if self.base else None
-        self.ground = Feeling(model.bucket.force if model.bucket else math.inf)
+        tool = model.bucket or model.blade
+        self.ground = Feeling(tool.force if tool else math.inf)
+        self._pushes = self.base if model.blade else None  # tracks that push a blade through soil
         self._in_soil = [self.arm.servos[joint] for joint in joints_in_soil(model)]
         self.fault = fault
         self.time = 0.0  # s
@@ -157,6 +159,8 @@ class StandIn:
         share = self.ground.share(self.time)
         for servo in self._in_soil:
             servo.resist(share)
+        if self._pushes is not None:
+            self._pushes.resist(share)
         self.controller.step(seconds)
         self.turner.step(seconds)
         if not busy:

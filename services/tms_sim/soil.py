@@ -15,7 +15,7 @@ JOINTS = 2  # that soil slows, those next to the bucket: of an excavator bucket 
 
 
 class Resistance:
-    """What slows one joint: the share of its free speed that is left in the direction in which it met the soil."""
+    """What slows a joint, or tracks: the share of the free speed that is left in the direction that met the soil."""
 
     def __init__(self) -> None:
         self._share, self._against = 1.0, 0.0
@@ -29,6 +29,10 @@ class Resistance:
     def slowed(self, velocity: float) -> float:
         """A velocity [rad/s] as the soil lets it be; back out of the soil it is free."""
         return velocity * self._share if velocity * self._against >= 0.0 else velocity
+
+    def limit(self, velocity: float, free: float) -> float:
+        """The fastest that the soil lets be in the direction of a velocity, of a free speed (both alike in unit)."""
+        return free * self._share if self._share < 1.0 and velocity * self._against >= 0.0 else math.inf
 
     def braked(self, velocity: float, slowed: float) -> float:
         """A velocity [rad/s] that soil brings down at once to what it lets be."""

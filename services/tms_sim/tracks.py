@@ -4,6 +4,7 @@ import math
 
 from tms_config.models import Drive, Response
 from tms_sim.dead_time import DeadTime
+from tms_sim.soil import Resistance
 
 SUBSTEP = 0.02  # s: the same motion at any time scale
 ZERO = 1e-3  # m/s, rad/s: a smaller command is one to brake, as in the simulator
@@ -24,6 +25,7 @@ class Tracks:
         self._lag = response.lag if response else None  # s
         self._commands: DeadTime[tuple[float, float]] = DeadTime(response.dead_time if response else 0.0)
         self._command = (0.0, 0.0)  # the command in effect
+        self._soil = Resistance()
 
     @property
     def still(self) -> bool:
@@ -33,6 +35,10 @@ class Tracks:
     def send(self, v: float, w: float) -> None:
         """Command velocities [m/s, rad/s], which stay until the next command."""
         self._commands.put(self.now, (v, w), self.more_dead_time)
+
+    def resist(self, share: float) -> None:
+        """Leave them a share of their fastest speed, in the direction in which they push a blade through soil."""
+        self._soil.meet(share, self.v)
 
     def brake_at_once(self) -> None:
         """Do an emergency stop without dead time: commands under way are lost."""
@@ -58,6 +64,8 @@ class Tracks:
         for command in self._commands.due(self.now):
             self._command = command
         v, w = self._command
+        self.v = cut(self.v, self._soil.limit(self.v, self.drive.velocity))
+        v = cut(v, self._soil.limit(v, self.drive.velocity))
         self.v = self._answer(self.v, v, self.drive.acceleration, h)
         self.w = self._answer(self.w, w, self.drive.turn_acceleration, h)
         self.yaw = math.remainder(self.yaw + self.w * h, math.tau)

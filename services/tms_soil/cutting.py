@@ -112,6 +112,16 @@ def around(points: Array, margin: float) -> Bounds:
 
 def depths(window: Window, edge: Array, ahead: Array) -> Array:
     """How deep [m] places along an edge are below the ground a cell ahead of it (unit vector, x and y)."""
+    return window.below(_before(edge, ahead))
+
+
+def piled(window: Window, edge: Array, ahead: Array) -> Array:
+    """How high [m] loose soil lies at these places."""
+    return window.loose(_before(edge, ahead))
+
+
+def _before(edge: Array, ahead: Array) -> Array:
+    """Points of map a cell ahead of an edge, as many as it passes cells."""
     count = max(2, math.ceil(float(np.hypot(*(edge[1, :2] - edge[0, :2]))) / FINE))
-    points = edge[0] + ((np.arange(count) + 0.5) / count)[:, None] * (edge[1] - edge[0])
-    return window.below(points + FINE * np.append(ahead, 0.0))
+    points: Array = edge[0] + ((np.arange(count) + 0.5) / count)[:, None] * (edge[1] - edge[0])
+    return points + FINE * np.append(ahead, 0.0)

@@ -47,6 +47,10 @@ class Digger:
         kind = int(self.load.argmax())
         return self._grid.soils[kind].fill * self._capacities[kind].heaped
 
+    def holds(self, place: Matrix) -> float:
+        """What stays in its present load's soil [m3, loose] in the air, with the bucket's link at `place`."""
+        return self._capacities[int(self.load.argmax())].at(tilt_of(place[:3, :3]))
+
     def lip(self, place: Matrix) -> Array:
         """Points of map [m] along the lower lip, from which soil falls, with the bucket's link at `place`."""
         return _along(_lower(self._points[:4] @ place[:3, :3].T + place[:3, 3]))

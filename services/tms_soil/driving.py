@@ -7,15 +7,16 @@ import numpy as np
 
 from tms_config.models import Blade, Tracks
 from tms_control.links import Matrix, placed
-from tms_soil.cutting import around, cut, depths, put_down, square_to, swept
-from tms_soil.grid import COMPACTED, FINE, LOOSE, Grid
-from tms_soil.resistance import force
+from tms_soil.cutting import around, cut, depths, piled, put_down, square_to, swept
+from tms_soil.grid import COMPACTED, FINE, LOOSE, Grid, Window
+from tms_soil.resistance import GRAVITY, force
 from tms_soil.surface import Array, Bounds, Mask
 
 PLACES = np.linspace(0.0, 1.0, 5)  # along a track, at which the ground is looked at
 PRESSES = 0.1  # m, way after which tracks press anew: a cell
 WINDROW = 0.4  # m, depth of the strip on which a blade leaves what it pushes
 RAKE = math.radians(60)  # rad, of a blade: ours
+HIGH = 0.9  # m, of a blade: what is piled higher runs over it
 STANDS = 1e-4  # m, motion of an edge that has no direction
 
 
@@ -96,7 +97,7 @@ class Grader:
 
     def __init__(self, blade: Blade, grid: Grid) -> None:
         self._blade, self._grid = blade, grid
-        self.resistance = 0.0  # N
+        self.resistance = 0.0  # N; a blade that stands keeps what it met
         (x, z), side = blade.edge, blade.width / 2
         self._edge = np.array([(x, side, z), (x, -side, z)])
 
@@ -104,6 +105,8 @@ class Grader:
         """Move the blade's link from one place in map to the next; returns where the ground changed."""
         old, new = (self._edge @ place[:3, :3].T + place[:3, 3] for place in (before, after))
         way = (new - old).mean(axis=0)
+        if float(np.linalg.norm(way)) < STANDS:
+            return []
         self.resistance = 0.0
         bounds = around(np.concatenate((old, new)), 2 * FINE)
         if math.hypot(way[0], way[1]) < STANDS or float(new[:, 2].min()) > self._grid.top(bounds):
@@ -114,10 +117,21 @@ class Grader:
         ahead = square_to(new, way)
         deep = depths(window, new, ahead)
         if deep.any():
-            self.resistance = force(window.soils[0], RAKE, self._blade.width, deep)
+            self.resistance = self._force(window, deep, piled(window, new, ahead))
         cells = swept(window, old, new)
         taken = float(cut(window, cells).sum()) if cells.rows.size else 0.0
         if taken == 0.0:
             return []
         self._grid.store(window)
         return [around(new, FINE), put_down(self._grid, new, WINDROW * ahead, taken)]
+
+    def _force(self, window: Window, deep: Array, high: Array) -> float:
+        """Force [N] of the solid ground that it cuts, `deep` [m] with what lies on it, and of the pile that it pushes.
+
+        The pile is as high as loose soil lies just ahead, and slopes away from there; it slides on soil.
+        """
+        soil = window.soils[0]
+        solid, high = np.maximum(deep - high, 0.0), np.minimum(np.minimum(high, deep), HIGH)
+        mass = soil.loose * self._blade.width * float(np.square(high).mean()) / (2 * soil.repose_slope)
+        slides = mass * GRAVITY * math.tan(math.radians(soil.friction))
+        return slides + force(soil, RAKE, self._blade.width, solid)

@@ -41,6 +41,11 @@ class Body:
         self.rests = False  # nothing happened in its last step
 
     @property
+    def stood(self) -> tuple[Mapping[str, float], Matrix] | None:
+        """Joint angles [rad] and the place of base_link in map at the last report; None: there was none."""
+        return None if self._known is None else self._known[:2]
+
+    @property
     def load(self) -> Array | None:
         """Soil in its bucket or vessel [kg by soil]; None: it has neither."""
         part = self.digger or self.hauler

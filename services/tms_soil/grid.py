@@ -85,13 +85,22 @@ class Window:
 
         Of points beside the window the nearest cell counts.
         """
+        layers, thickness = self.of(*self._at(points))
+        deep: Array = np.fmax((layers * thickness).sum(axis=0) + self.datum - points[:, 2], 0.0)
+        return deep
+
+    def loose(self, points: Array) -> Array:
+        """How high [m] loose soil lies at points of map, as for `below`."""
+        layers, thickness = self.of(*self._at(points))
+        high: Array = layers[LOOSE] * thickness[LOOSE]
+        return high
+
+    def _at(self, points: Array) -> tuple[Indices, Indices]:
         at = ((points[:, :2] - (self.x[0], self.y[0, 0])) / FINE + 0.5).astype(np.intp)
         rows, columns = (
             np.minimum(np.maximum(at[:, k], 0), size - 1) for k, size in zip((1, 0), self.layers.shape[1:], strict=True)
         )
-        layers, thickness = self.of(rows, columns)
-        deep: Array = np.fmax((layers * thickness).sum(axis=0) + self.datum - points[:, 2], 0.0)
-        return deep
+        return rows, columns
 
 
 class Grid:

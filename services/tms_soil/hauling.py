@@ -43,6 +43,11 @@ class Hauler:
         """What it holds at most, loose [m3]."""
         return self._vessel.heaped
 
+    @property
+    def middle(self) -> Array | None:
+        """The middle of its inside [m of map]; None while its place is not known."""
+        return None if self._place is None else self._in_map(tuple(0.5 * (self._least + self._most)))[0]
+
     def below(self, points: Array) -> float:
         """The share of points of map [m] from which soil falls into it."""
         if self._place is None:

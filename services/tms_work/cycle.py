@@ -38,6 +38,7 @@ class Cycle(BaseModel):
     distance: Amount = 0.0  # m, driven
     buckets: int = Field(ge=0, default=0)  # that a carrier's load came in
     into: str = ""  # machine that took the soil; empty: the ground
+    unseen: Amount = 0.0  # s of it in which nobody looked: what was moved then is estimated, or missing
     measured: bool = False  # by the machine itself; otherwise it is an estimate
 
     @property
@@ -52,7 +53,7 @@ class Cycle(BaseModel):
         for name in self.parts:
             if name not in PARTS[self.kind]:
                 raise Wrong(NoSuchPart(PARTS[self.kind]), "parts", name)
-        whole = sum(self.parts.values())
+        whole = sum(self.parts.values()) + self.unseen
         if whole > self.seconds + SLACK:
             raise Wrong(PartsTooLong(whole, self.seconds), "parts")
         return self

@@ -37,6 +37,7 @@ class Draft(BaseModel):
     soil: str = ""
     measured: bool = False
     distance: float = 0.0  # m, driven
+    unseen: float = 0.0  # s of silences, which are in no part
 
     @classmethod
     def begin(cls, run: str, sample: Sample, part: str) -> "Draft":
@@ -75,6 +76,11 @@ class Draft(BaseModel):
             self.settle(way)
             self._add("stopped" if now.stopped else self.part, seconds)
 
+    def miss(self, seconds: float, now: Sample, way: Way) -> None:
+        """Go over a silence [s], in which anything may have happened."""
+        self.settle(way)
+        self.top, self.at, self.unseen = None, (now.x, now.y), self.unseen + seconds
+
     def settle(self, way: Way) -> None:
         """Give the time that is in no part yet to one."""
         self._add(way.wait if self.still >= PATIENCE else self.part, self.still)
@@ -88,7 +94,7 @@ class Draft(BaseModel):
         return Cycle(
             run_id=self.run, machine=machine, number=number, kind=way.kind, begun_at=_date(self.begun),
             ended_at=_date(end), parts=self.parts, soil=self.soil, bank=bank, loose=loose, mass=mass,
-            fill=loose / heaped, distance=self.distance, measured=self.measured,
+            fill=loose / heaped, distance=self.distance, unseen=self.unseen, measured=self.measured,
             into=max(self.into, key=lambda name: self.into[name], default=""),
             buckets=self.fills if way.kind == "haul" else 0,
         )  # fmt: skip

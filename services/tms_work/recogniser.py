@@ -5,10 +5,11 @@ A cycle ends when the load is out, so it counts at once; the way back belongs to
 - Soil that falls out on the way is spilled, not moved, until SPILL of the load has gone or a carrier is below.
 - What falls out where it was dug has not been moved; the dig goes on.
 - A bucket that is emptied in several goes is one cycle: rests count until soil comes in again.
-- A run that ends, a silence and a clock that goes back end a cycle; it counts if soil was moved. The load stays in the
-  bucket, and counts where it is dumped. Work without a run is not counted.
-- An estimated load does not grow in a silence. If it has, a ground of an earlier time was brought back, and what is in
-  the bucket has been counted already.
+- A run that ends and a clock that goes back end a cycle, and so does a silence in which soil was poured; it counts if
+  soil was moved. The load stays in the bucket, and counts where it is dumped. Work without a run is not counted.
+- The time of a silence is in no part: it is told as unseen.
+- An estimated load does not grow while we are away. If it has, a ground of an earlier time was brought back, and what
+  is in the bucket has been counted already. What a PC that has much to do tells late has happened.
 """
 
 import math
@@ -23,7 +24,7 @@ from tms_work.ways import Way
 
 STEP = 0.2  # s between two samples that are taken at least: loads are told with noise
 GAP = 5.0  # s of silence in which anything may have happened
-LOST = 1.0  # s of silence, after which estimates of loads begin anew where they were (tms_soil.earth.GAP)
+LOST = 1.0  # s, that a restart takes at least
 FLOWS = 0.005  # of the heaped volume in a second; what is slower is noise, or trickles
 LEAST = 0.02  # of the heaped volume, below which nothing is carried
 SPILL = 0.25  # of the load, that may fall out on the way
@@ -42,6 +43,7 @@ class State(BaseModel):
     before: Sample | None = None  # the last one that was taken
     draft: Draft | None = None  # None: no run holds the machine
     numbers: dict[str, int] = Field(default_factory=dict)  # of the last cycle, by run
+    first: int = Field(ge=1, default=1)  # number of the first cycle of a run
 
 
 class Recogniser:
@@ -51,6 +53,7 @@ class Recogniser:
         """`heaped`: what its bucket or vessel holds [m3], loose."""
         self._machine, self._way, self._heaped = machine, way, heaped
         self._state = State()
+        self._restored = False  # and nothing was taken since
 
     @property
     def kind(self) -> Kind:
@@ -61,6 +64,12 @@ class Recogniser:
     def carries(self) -> bool:
         """Whether it carries soil from where it was filled to where it is poured."""
         return self._state.draft is not None and self._state.draft.part == self._way.carry
+
+    @property
+    def seen(self) -> float | None:
+        """When it was looked at last [s since 1970]; None while no run holds it."""
+        before = self._state.before
+        return None if before is None or self._state.draft is None else before.time
 
     def state(self) -> dict[str, Any]:
         """Everything that it remembers, as JSON knows it."""
@@ -73,10 +82,15 @@ class Recogniser:
             ValueError: it is none; then nothing has changed.
         """
         self._state = State.model_validate(state)
+        self._restored = True
 
     def forget(self) -> None:
         """Drop the cycle that is not over, as nobody knows what has become of the load; the next number stays."""
-        self._state = State(numbers=self._state.numbers)
+        self._state = State(numbers=self._state.numbers, first=self._state.first)
+
+    def number_from(self, first: int) -> None:
+        """Give the next cycle of every run this number: nobody knows which ones were used."""
+        self._state = State(first=first)
 
     def take(self, now: Sample) -> list[Cycle]:
         """The cycles that have ended by a sample; one that is not newer than the last one changes nothing."""
@@ -87,13 +101,17 @@ class Recogniser:
         if -GAP <= elapsed < STEP - 1e-6:
             return []
         self._state.before = now
-        counted = before is not None and not 0.0 < elapsed <= LOST and self._is_back(before, now)
+        silent = self._restored and not 0.0 < elapsed <= LOST
+        counted = before is not None and silent and not now.estimated and self._is_back(before, now)
+        self._restored = False
         cycles = [] if before is None else self._end(before.time) if counted else self._through(before, now, elapsed)
         draft = self._state.draft
         if now.run and (draft is None or draft.run != now.run):
             sticks = now.load.loose <= REST * sum(one.loose for one in cycles)
             carries = self._loaded(now) and not counted and not sticks
-            self._begin(now.run, now, self._way.carry if carries else self._way.empty)
+            draft = self._begin(now.run, now, self._way.carry if carries else self._way.empty)
+            if before is not None and before.run == now.run and elapsed > GAP:
+                draft.begun, draft.unseen = before.time, elapsed
         return cycles
 
     def _is_back(self, before: Sample, now: Sample) -> bool:
@@ -114,7 +132,7 @@ class Recogniser:
             cycles = []
         self._soil(draft, before, now, share)
         if silent:
-            return cycles + self._end(before.time)
+            return cycles + self._miss(draft, before, now, elapsed)
         draft.drive(before, now)
         draft.spend(seconds, now, self._way)
         if now.run != draft.run or self._is_out(draft, now, share):
@@ -122,6 +140,13 @@ class Recogniser:
             if now.run == draft.run:
                 self._begin(now.run, now, self._way.empty)
         return cycles
+
+    def _miss(self, draft: Draft, before: Sample, now: Sample, elapsed: float) -> list[Cycle]:
+        """Go over a silence: what was poured ends with it; else the cycle goes on, and knows how long it missed."""
+        if draft.poured is not None or now.run != draft.run or elapsed <= 0.0:
+            return self._end(before.time)
+        draft.miss(elapsed, now, self._way)
+        return []
 
     def _soil(self, draft: Draft, before: Sample, now: Sample, share: float) -> None:
         """Find the part that it is in, and what went out; `share` of the heaped volume came in in a second."""
@@ -178,7 +203,7 @@ class Recogniser:
         if draft is None or draft.poured is None:
             return []
         numbers = self._state.numbers
-        number = numbers.pop(draft.run, 0) + 1
+        number = numbers.pop(draft.run, self._state.first - 1) + 1
         numbers[draft.run] = number  # the last one used is at the end
         if len(numbers) > RUNS:
             del numbers[next(iter(numbers))]

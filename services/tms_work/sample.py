@@ -33,4 +33,5 @@ class Sample(NamedTuple):
     measured: bool = False  # the load, by the machine; otherwise it is an estimate
     swing: float = 0.0  # rad/s, of an excavator's upper body, either way
     cuts: bool = False  # the edge of an excavator's bucket is in the ground
+    estimated: bool = False  # the load follows from how machines stood before and after a silence
     under: str = ""  # carrier below an excavator's bucket; empty: none

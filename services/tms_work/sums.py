@@ -20,7 +20,8 @@ class Sum:
     loads: int  # of carriers
     hauled: float  # m3, loose, that carriers tipped
     distance: float  # m, driven by carriers
-    digging: float  # s, of all excavators' cycles together
+    digging: float  # s, of all excavators' cycles together, as far as they were seen
+    unseen: float  # s of all cycles in which nobody looked: what was moved then is estimated, or missing
     parts: dict[str, float]  # s, of excavators' cycles
     haul_parts: dict[str, float]  # s, of carriers' cycles
     measured: int  # cycles of excavators whose volume a machine measured itself
@@ -50,7 +51,8 @@ def total(cycles: Sequence[Cycle]) -> Sum:
         loads=sum(one.loose > 0 for one in hauls),
         hauled=sum(one.loose for one in hauls),
         distance=sum(one.distance for one in hauls),
-        digging=sum(one.seconds for one in dug),
+        digging=sum(one.seconds - one.unseen for one in dug),
+        unseen=sum(one.unseen for one in cycles),
         parts=_parts(dug),
         haul_parts=_parts(hauls),
         measured=sum(one.measured for one in dug),

@@ -291,6 +291,13 @@ def test_work_by_machine_hour_and_day(tms: Callable[..., Result], shared_db: sto
     ]
     assert tms(work.command, "--day", "soon").exit_code == tms(work.command, "--json", "--csv").exit_code == 2
     assert json.loads(tms(work.command, "--day", "yesterday", "--json").stdout)["groups"] == {}
+    assert "seen" not in "".join(table)
+    missed = cycle(5, 26)
+    away = {"begun_at": missed.begun_at - timedelta(seconds=90), "unseen": 90.0}
+    Cycles(shared_db).write([missed.model_copy(update=away)])
+    assert "1.5 min of machine time were not seen" in tms(work.command).stdout.splitlines()[-1]
+    total = json.loads(tms(work.command, "--json").stdout)["total"]
+    assert total["unseen_s"] == 90.0 and total["bank_m3_per_hour"] == pytest.approx(45.0), "of the time that was seen"
 
 
 def test_the_daily_report(tms: Callable[..., Result], shared_db: store.Db, tmp_path: Path) -> None:

@@ -57,6 +57,9 @@ def command(run_id: str, day: date | None, machine: str, by: str, as_json: bool,
     else:
         for line in _table(by, groups, total):
             click.echo(line)
+        if total.unseen:
+            click.echo(say("{minutes:.1f} min of machine time were not seen: soil moved then is estimated or missing",
+                           minutes=total.unseen / 60))  # fmt: skip
 
 
 def as_dict(one: "Sum") -> dict[str, Any]:
@@ -65,7 +68,7 @@ def as_dict(one: "Sum") -> dict[str, Any]:
         "cycles": one.cycles, "bank_m3": one.bank, "loose_m3": one.loose, "mass_t": one.mass / 1000,
         "fill_factor": one.fill, "truck_loads": one.loads, "hauled_loose_m3": one.hauled, "distance_m": one.distance,
         "seconds": one.digging, "bank_m3_per_hour": one.rate, "mean_cycle_s": one.mean_cycle,
-        "measured_cycles": one.measured, "parts_s": one.parts, "haul_parts_s": one.haul_parts,
+        "measured_cycles": one.measured, "unseen_s": one.unseen, "parts_s": one.parts, "haul_parts_s": one.haul_parts,
     }  # fmt: skip
 
 

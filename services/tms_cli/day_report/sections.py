@@ -63,6 +63,8 @@ def plan(facts: Facts) -> Section:
         _against(facts.say("Mean cycle [s]"), None, total.mean_cycle, 1),
         _against(facts.say("Mean fill factor"), None, total.fill, 2),
     ]
+    if total.unseen:
+        rows.append(_against(facts.say("Machine time that nobody saw [min]"), None, total.unseen / 60, 1))
     head = ("", facts.say("Plan"), facts.say("Actual"), facts.say("Share"))
     return Section(facts.say("Plan against actual"), head, tuple(rows))
 

@@ -352,7 +352,7 @@ def test_the_bridge_has_settings_of_its_own(tmp_path: Path) -> None:
     [
         ("response: {}", "response", NoResponse("swing_joint")),
         ("initial: {tail_joint: 0}", "", NoSuchLink("tail_joint")),
-        ("blade: {link: tail_link, edge: [0, 0], width: 3, origin: o}", "", NoSuchLink("tail_link")),
+        ("blade: {link: tail_link, edge: [0, 0], width: 3, force: 1, origin: o}", "", NoSuchLink("tail_link")),
         ("bucket: {link: bucket_link, section: [[0, 0], [1, 0], [0.4, 0.1], [0, 1]], width: 1, force: 1, origin: o}",
          "bucket.section", NotConvex()),
         ("borders: {sim: {odom: odom}}", "borders.sim.sources.odom", NoSourceFacts()),

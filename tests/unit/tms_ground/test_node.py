@@ -19,7 +19,7 @@ from earth_rig import dig_poses, moved, reports
 from tms_config.config import load_site
 from tms_ground import node
 from tms_ground.heights import SERVICE
-from tms_ground.reasons import BadCell, GroundNotKept, GroundOther, NotAnArea
+from tms_ground.reasons import BadCell, GroundDamaged, GroundOther, NotAnArea
 from tms_ground.telling import PATCHES
 from tms_reason.wire import refusal
 from tms_soil.patches import heights
@@ -219,7 +219,7 @@ def test_a_kept_ground_that_does_not_fit_is_put_aside(
     with structlog.testing.capture_logs() as logs:
         node.start(other.app)
     (line,) = (one for one in logs if one["event"] == "ground_begins_anew")
-    assert isinstance(line["reason"], GroundNotKept if damaged else GroundOther)
+    assert isinstance(line["reason"], GroundDamaged if damaged else GroundOther)
     assert not file.exists() and file.with_name(file.name + ".unreadable").exists()
     other.steps["ground"]()
     assert other.published["/zx200/soil_volume"] == [0.0]

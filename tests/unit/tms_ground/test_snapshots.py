@@ -59,7 +59,7 @@ class Site:
 
     def restart(self) -> None:
         if (content := self.watch.content()) is not None:
-            self.watch.file.write_bytes(content)
+            self.watch.file.write_bytes(content.ground)
         self.start()
 
     def call(self, kind: Any, name: str, request: Any, _: float) -> Any:

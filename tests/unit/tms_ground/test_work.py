@@ -23,6 +23,7 @@ from earth_rig import NAMES as JOINTS
 from tms_config.config import load_site
 from tms_db import messages
 from tms_ground import node
+from tms_ground.reasons import GroundAway, GroundDamaged, GroundGone, WorkLost
 from tms_reason.errors import RosError
 from tms_reason.reason import Foreign
 from tms_work.cycle import Cycle
@@ -71,6 +72,7 @@ class Pc:
             site=load_site(str(self.site)), ros=ros, log=structlog.stdlib.get_logger("test"),
             on_stop=lambda _: None, ready_when=lambda _: None,
         )  # fmt: skip
+        self.state = app.site.state
         self.bases = {name: app.site.border(name).base_frame for name in app.site.file.machines}
         node.start(app)
         self.run("r1")
@@ -97,6 +99,15 @@ class Pc:
         self.waiting.setdefault("/tf", []).append(TFMessage(transforms=[base]))
         joints = JointState(name=list(angles), position=list(angles.values()))
         self.waiting[f"/{machine}/joint_states"] = [joints]
+
+    @property
+    def ground(self) -> Path:
+        return self.state / "ground.npz"
+
+    def load(self, machine: str) -> float:
+        found = REGISTRY.get_sample_value("tms_ground_load_cubic_metres", {"machine": machine})
+        assert found is not None
+        return found
 
     def look(self) -> None:
         self.steps["ground"]()
@@ -287,6 +298,106 @@ def test_work_of_another_release_begins_anew_and_the_ground_stays(pc: Pc, monkey
     with structlog.testing.capture_logs() as logs:
         pc.start()
     assert [one["event"] for one in logs] == ["ground_goes_on", "work_begins_anew"]
+
+
+def again(pc: Pc, turn: float) -> list[int]:
+    """Another bucket; the numbers of all that the database knows."""
+    pc.dig([BACK, *dig_poses(turn)[2:], ABOVE, *[OPEN] * 12, BACK])
+    return [one.number for one in pc.cycles("zx200")]
+
+
+def reasons(pc: Pc) -> list[type]:
+    """Why the next start does not go on as if nothing had happened."""
+    with structlog.testing.capture_logs() as logs:
+        pc.start()
+    return [type(one["reason"]) for one in logs if "reason" in one]
+
+
+@pytest.mark.parametrize("damage", [lambda file: file.write_bytes(file.read_bytes()[:2000]), Path.unlink])
+def test_numbers_go_on_though_the_ground_cannot_be_read(pc: Pc, damage: Callable[[Path], None]) -> None:
+    """What was sent stays as it is, what waits is sent, and each cycle has a number of its own."""
+    pc.dig(BUCKET)
+    (first,) = pc.cycles("zx200")
+    pc.away = True
+    assert again(pc, -1.2) == [1]
+    damage(pc.ground)
+    assert reasons(pc) in ([GroundDamaged], [GroundGone])
+    pc.away = False
+    assert [one.number for one in pc.cycles("zx200")] == [1, 2] and pc.cycles("zx200")[0] == first
+    assert again(pc, -0.9) == [1, 2, 3]
+    assert reasons(pc)[:1] == [GroundAway], "it goes on with the next file"
+    assert again(pc, -0.7) == [1, 2, 3, 4]
+
+
+def test_numbers_come_from_the_clock_where_no_file_can_be_read(pc: Pc) -> None:
+    pc.dig(BUCKET)
+    (first,) = pc.cycles("zx200")
+    for file in (pc.ground, pc.ground.with_name("work.json")):
+        file.write_bytes(file.read_bytes()[:20])
+    assert reasons(pc) == [GroundDamaged, WorkLost]
+    begun = int(BEGIN + pc.now)
+    assert again(pc, -1.2) == [1, begun] and pc.cycles("zx200")[0] == first
+    pc.start()
+    assert again(pc, -0.9) == [1, begun, begun + 1]
+
+
+def test_a_crash_in_the_middle_of_a_dig_loses_nothing(pc: Pc) -> None:
+    """The file was written before the dig; what was told since is in the journal."""
+    pc.dig([OPEN, BACK])
+    pc.steps["ground_file"]()
+    pc.dig([*dig_poses(now=BACK), Arm(-0.6, *HOLD)])
+    held = pc.load("zx200")
+    assert held > 0.5
+    pc.start()
+    pc.look()
+    assert pc.load("zx200") == pytest.approx(held, rel=1e-9)
+    pc.dig([Arm(-0.6, *HOLD), ABOVE, *[OPEN] * 12, BACK])
+    (dug,) = pc.cycles("zx200")
+    assert dug.loose == pytest.approx(held, rel=0.03) and dug.buckets == 0 and dug.into == "ic120"
+    assert dug.parts["dig"] > 2.0, "also the time before the crash"
+
+
+def test_a_journal_that_was_cut_off_counts_as_far_as_it_reaches(pc: Pc) -> None:
+    pc.dig([*dig_poses(), Arm(-0.6, *HOLD)])
+    held = pc.load("zx200")
+    (journal,) = pc.ground.parent.glob("ground.journal.*")
+    journal.write_bytes(journal.read_bytes()[:-30] + b"\x00" * 30)
+    pc.start()
+    pc.dig([Arm(-0.6, *HOLD), ABOVE])
+    assert pc.load("zx200") == pytest.approx(held, rel=0.02)
+
+
+def test_a_bucket_that_was_emptied_while_nobody_looked_is_in_the_truck(pc: Pc) -> None:
+    """It swung over the truck, opened, and had swung half-way back when tms:ground was there again."""
+    pc.dig([*dig_poses(), Arm(-0.3, *HOLD)])
+    held = pc.load("zx200")
+    pc.now += 8.0
+    assert reasons(pc) == [GroundAway]
+    half = OPEN._replace(swing=-0.8)
+    pc.dig([half, BACK])
+    assert pc.load("zx200") == 0.0 and pc.load("ic120") == pytest.approx(held, rel=0.01)
+    (dug,) = pc.cycles("zx200")
+    assert (dug.into, dug.number, dug.loose) == ("ic120", 1, pytest.approx(held, rel=0.01))
+    assert again(pc, -1.2) == [1, 2]
+    second = pc.cycles("zx200")[1]
+    assert second.unseen == pytest.approx(8.0, abs=0.5), "its way back began while nobody looked"
+    assert sum(second.parts.values()) + second.unseen == pytest.approx(second.seconds, abs=0.5)
+    pc.tip()
+    (hauled,) = pc.cycles("ic120")
+    assert hauled.loose == pytest.approx(dug.loose + second.loose, rel=0.1) and hauled.buckets == 2
+
+
+def test_a_bucket_that_came_out_of_the_ground_while_nobody_looked_holds_soil(pc: Pc) -> None:
+    pc.dig(dig_poses()[:-2])
+    up = dig_poses()[-1]
+    assert pc.load("zx200") < 0.2
+    pc.now += 6.0
+    pc.start()
+    pc.dig([up, up])
+    assert 0.2 < pc.load("zx200") < 0.9
+    pc.dig([up, ABOVE, *[OPEN] * 12, BACK])
+    (dug,) = pc.cycles("zx200")
+    assert dug.loose > 0.2 and dug.unseen == pytest.approx(6.0, abs=0.5), "marked as an estimate"
 
 
 def full(*_: object) -> None:

@@ -10,6 +10,7 @@ from tms_config.site_file import Fault
 from tms_control.links import placed, quaternion, turned
 from tms_control.reference_trajectory import Knot
 from tms_machine.geometry import yaw_of
+from tms_sim.base import Leg
 from tms_sim.drive import JointDrive
 from tms_sim.frames import Chain
 from tms_sim.machine import StandIn
@@ -17,6 +18,8 @@ from tms_sim.soil import LEVEL, Resistance, joints_in_soil, stance, turn_of
 
 ZX200 = model_of("zx200")
 NAMES = list(ZX200.joints)
+D37PXI = model_of("d37pxi")
+PUSHES = D37PXI.blade.force if D37PXI.blade else math.nan
 FORCE = ZX200.bucket.force if ZX200.bucket else math.nan
 
 
@@ -66,6 +69,40 @@ def test_a_bucket_that_meets_more_than_it_can_take_stalls_and_comes_out_again(id
     assert stuck[-1] < begin + 0.6
     out = dig(made, 6.0, 1.2 * FORCE, arm=-0.3)["arm_joint"]
     assert out[-1] < stuck[-1] - 0.25, "back is free"
+
+
+def driven(made: StandIn, v: float, seconds: float, resistance: float) -> float:
+    """Speed [m/s] of the tracks after a command; soil resists a blade that goes on into it, or stands."""
+    assert made.base is not None
+    made.drive(v, 0.0)
+    for _ in range(round(seconds / 0.04)):
+        made.feel(0.0 if made.base.v < 0.0 else resistance, LEVEL)
+        made.step(0.04)
+    return made.base.v
+
+
+@pytest.mark.parametrize("ideal", [False, True])
+def test_a_blade_that_pushes_soil_slows_the_tracks_and_stalls_them(ideal: bool) -> None:
+    made = StandIn(D37PXI, (0.0, 0.0, 0.0), Fault(), lambda: None, Border(), ideal=ideal)
+    assert driven(made, 1.0, 8.0, 0.0) == pytest.approx(1.0, abs=0.01)
+    assert driven(made, 1.0, 1.0, 0.4 * PUSHES) == pytest.approx(0.6, abs=0.01)
+    assert driven(made, 0.3, 8.0, 0.4 * PUSHES) == pytest.approx(0.3, abs=0.01), "there is force enough for less"
+    assert driven(made, 1.0, 0.2, 1.2 * PUSHES) == 0.0
+    assert driven(made, -0.5, 8.0, 1.2 * PUSHES) == pytest.approx(-0.5, abs=0.01), "back is free"
+
+
+def test_a_way_takes_longer_where_a_blade_pushes_soil() -> None:
+    times = []
+    for resistance in (0.0, 0.5 * PUSHES):
+        made = StandIn(D37PXI, (0.0, 0.0, 0.0), Fault(), lambda: None, Border())
+        assert made.navigator is not None and made.base is not None
+        trip = made.navigator.begin([Leg(6.0, 0.0, 0.0)])
+        while trip.verdict is None and made.time < 60.0:
+            made.feel(resistance, LEVEL)
+            made.step(0.04)
+        assert made.base.x == pytest.approx(6.0, abs=0.1)
+        times.append(made.time)
+    assert times[1] > times[0] + 2.0
 
 
 def test_silence_ends_a_resistance() -> None:

@@ -8,12 +8,15 @@ import pytest
 
 from earth_rig import flat, model_of, soils
 from tms_control.links import placed
-from tms_soil.driving import Grader, Rolling
+from tms_soil.driving import RAKE, Grader, Rolling
+from tms_soil.earth import Earth
 from tms_soil.grid import BANK, COMPACTED, LOOSE, Grid
+from tms_soil.resistance import force
 from tms_soil.surface import Heights
 
 TRACKS, BLADE = model_of("zx200").tracks, model_of("d37pxi").blade
 assert TRACKS is not None and BLADE is not None
+MIDDLE = 0.38606 - 0.10373 + BLADE.edge[1]  # m, of its edge above base_link, with all joints at 0
 
 
 def sloping(x: float, y: float) -> Grid:
@@ -96,6 +99,26 @@ def test_a_blade_cuts_bumps_and_fills_hollows() -> None:
     assert window.layers[LOOSE].sum() > 0
     assert grid.mass() == pytest.approx(before, rel=1e-14)
     assert grader.resistance > 0
+
+
+def test_a_blade_meets_what_it_cuts_and_what_it_pushes() -> None:
+    forces = []
+    for length in (0.3, 2.0, 4.0):
+        earth = Earth(Grid.from_heights(flat(), soils()), {"d37pxi": model_of("d37pxi")})
+        for k in range(201):
+            place = placed(-3.0 + length * k / 200, 0.0, 0.0)
+            place[2, 3] = -0.1 - MIDDLE
+            earth.report("d37pxi", length * k / 200, {}, place)
+        forces.append(earth.bodies["d37pxi"].resistance)
+        earth.report("d37pxi", length + 0.02, {}, place)  # it stands
+        assert earth.bodies["d37pxi"].resistance == forces[-1], "a blade that stands keeps what it met"
+    solid = force(soils()[0], RAKE, BLADE.width, np.array([0.1]))
+    assert solid < forces[0] < forces[1] < forces[2] < 12 * solid
+    assert forces[2] < 0.5 * BLADE.force, "a bulldozer pushes four metres of it"
+    place = placed(0.9, 0.0, 0.0)
+    place[2, 3] = 0.3
+    earth.report("d37pxi", 4.04, {}, place)
+    assert earth.bodies["d37pxi"].resistance == 0.0, "out of the soil"
 
 
 def test_a_blade_above_the_ground_does_nothing() -> None:

@@ -5,6 +5,7 @@ from typing import Any
 
 import pytest
 
+from tms_work import sums
 from tms_work.cycle import Cycle
 from tms_work.recogniser import Recogniser
 from tms_work.ways import EXCAVATOR
@@ -147,6 +148,22 @@ def test_a_bucket_emptied_in_a_silence() -> None:
     assert one.ended_at.timestamp() == pytest.approx(end) and one.seconds < 10
 
 
+def test_what_nobody_saw_is_in_no_part() -> None:
+    """A silence while it carries is in its cycle; one in which it was emptied is in the next one."""
+    tape = Tape().go(5, 0.8, cuts=True).go(2, swing=0.5)
+    tape.time += 30
+    tape.go(2, swing=0.5)
+    tape.time += 20
+    tape.loose = 0.0
+    first, second = seen(bucket(tape.go(3, swing=-0.5), 0.6))
+    assert (first.loose, second.loose) == pytest.approx((0.8, 0.6))
+    assert (first.unseen, second.unseen) == pytest.approx((30.2, 20.2))
+    assert second.parts["swing_back"] < 4.0, "the silence is no part of it"
+    assert first.parts == pytest.approx({"dig": 5.0, "swing_loaded": 3.8})
+    found = sums.total([first, second])
+    assert found.unseen == pytest.approx(50.4) and found.digging < 30.0, "figures an hour are of what was seen"
+
+
 def test_a_rest_after_a_silence_is_no_bucket() -> None:
     tape = Tape().go(5, 0.8, cuts=True).go(4, swing=0.5, under="ic120_1")
     tape.time += 60
@@ -157,11 +174,25 @@ def test_a_rest_after_a_silence_is_no_bucket() -> None:
 
 def test_a_load_that_is_back_after_a_restart_was_counted() -> None:
     tape = bucket(Tape(), 0.8)
+    until = len(tape.samples)
     tape.time += 3
     tape.loose = 0.7
     tape.go(2, swing=0.5).go(1, 0.0, swing=0.5).go(1, swing=0.5)
     tape.go(100, 0.3).go(4, swing=0.5).go(2, 0.0)
-    assert [one.loose for one in seen(bucket(tape, 0.6))] == pytest.approx([0.8, 0.3, 0.6])
+    samples = bucket(tape, 0.6).samples
+    before, after = excavator(), excavator()
+    found = taken(before, samples[:until])
+    after.restore(json.loads(json.dumps(before.state())))
+    assert [one.loose for one in found + taken(after, samples[until:])] == pytest.approx([0.8, 0.3, 0.6])
+
+
+def test_samples_that_come_seldom_count_each_bucket() -> None:
+    """Machines that live fast, on a PC that has much to do."""
+    tape = Tape()
+    for _ in range(3):
+        tape.go(6, 0.8, cuts=True).go(4, swing=0.5).go(3, 0.0, under="ic120_1").go(5, swing=-0.5)
+    found = taken(excavator(), tape.samples[::7])  # 1.4 s
+    assert [one.loose for one in found] == pytest.approx([0.8] * 3, abs=0.01)
 
 
 def test_a_bucket_filled_and_emptied_in_silences_that_was_weighed() -> None:
