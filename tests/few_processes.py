@@ -34,10 +34,12 @@ machines: {{}}
 class Mesh:
     """`tms:store` and `tms:db` as processes of our own, and a client of them."""
 
+    SITE = SITE
+
     def __init__(self, folder: Path, domain: int) -> None:
         port = ports_of(domain)
         file = folder / "site.yaml"
-        text = SITE.format(domain=domain, metrics=port, console=port + 90, store=port + 91)
+        text = self.SITE.format(domain=domain, metrics=port, console=port + 90, store=port + 91)
         file.write_text(text)
         self.site: Site = load_site(str(file))
         self.environment = {**os.environ, **environment.environment(self.site)}

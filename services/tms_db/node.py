@@ -1,4 +1,4 @@
-"""`tms:db`: serves tasks, parameters and history as ROS services; stays up while the store is away."""
+"""`tms:db`: serves tasks, parameters and history as ROS services, records runs; stays up while the store is away."""
 
 from tms_msg_db.srv import (
     AddTask,
@@ -21,6 +21,8 @@ from tms_db.history import History
 from tms_db.machine_states import MachineStates
 from tms_db.parameter_services import ParameterServices
 from tms_db.places import PlaceServices
+from tms_db.recorder import Recorder
+from tms_db.recording_services import RecordingServices
 from tms_db.retention import Retention
 from tms_db.task_text import MODELS
 from tms_db.tasks import Tasks
@@ -102,6 +104,10 @@ def start(app: App) -> None:
     TerrainServices(app, db, connection).offer()
     GroundServices(app, db).offer(answering)
     PlaceServices(app, db, connection).offer()
+    RecordingServices(db).offer(answering)
+    recorder = Recorder(app, db, connection)
+    app.on_stop(recorder.stop)
+    recorder.start()
     retention = Retention(db, connection, app.site.file.store, app.log)
     app.on_stop(retention.stop)
     retention.start()

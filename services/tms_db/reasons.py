@@ -99,6 +99,8 @@ class StateNoJson(Reason, text="{collection} of {machine}: is no JSON ({problem}
     collection: str; machine: str; problem: str
 class StateNoObject(Reason, text="{collection} of {machine}: must be a JSON object"): collection: str; machine: str
 class NoStateTime(Reason, text="the newest state of a machine has the time '{time}', which is none"): time: str
+class RecordingDamaged(Reason, text="the recording of {machine} at {time} is damaged ({why}): nobody can read it"):
+    machine: str; time: str; why: str
 class RunMissing(Reason, text="there is no run '{run}'", action=RUNS): run: str
 class NoEventNumber(Reason, text="event {number} of run {run}: needs a number from 1"): number: int; run: str
 class BadRunId(Reason, text="run_id '{run}' {why}"): run: str; why: Reason

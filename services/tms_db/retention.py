@@ -1,4 +1,4 @@
-"""Deletes what is older than the site keeps: ended runs with all events, states of machines, cycles, grounds.
+"""Deletes what is older than the site keeps: runs with all events, states of machines, recordings, cycles, grounds.
 
 A run goes whole or stays whole. One that has not ended (active, or interrupted and still to be resumed) stays, and so
 do all tasks and records. Ages count back from the newest run as well as from the clock: a clock that is years ahead,
@@ -16,6 +16,7 @@ from tms_db.connection import StoreConnection
 from tms_db.cycles import COLLECTION as CYCLE
 from tms_db.machine_states import COLLECTIONS
 from tms_db.reasons import NoStateTime
+from tms_db.recordings import COLLECTION as RECORDING
 from tms_db.store import Db, errors
 from tms_db.terrain import GROUND, Terrain
 from tms_db.worker import Worker
@@ -86,6 +87,19 @@ def delete_cycles(db: Db, days: int, now: datetime) -> int:
     return _delete_before(db, CYCLE, min(now, newest["ended_at"]) - timedelta(days=days), "ended_at")
 
 
+def delete_recordings(db: Db, days: int, now: datetime) -> int:
+    """Delete what machines told more than `days` ago while runs were active. Returns how many pieces.
+
+    Raises:
+        DbError: the store is away.
+    """
+    with errors():
+        newest = db[RECORDING].find_one({}, {"begin": 1}, sort=[("begin", -1)])
+    if newest is None:
+        return 0
+    return _delete_before(db, RECORDING, min(now, newest["begin"]) - timedelta(days=days), "begin")
+
+
 def delete_grounds(db: Db, days: int, now: datetime) -> int:
     """Delete snapshots of the ground that are older than `days`, but never the newest one. Returns how many.
 
@@ -154,5 +168,7 @@ class Retention:
             gone["cycles"] = delete_cycles(self._db, self._settings.work_days, now)
         if self._settings.ground_days is not None:
             gone["grounds"] = delete_grounds(self._db, self._settings.ground_days, now)
+        if self._settings.recording_days is not None:
+            gone["recordings"] = delete_recordings(self._db, self._settings.recording_days, now)
         if any(gone.values()):
             self._log.info("retention", reason=" ".join(f"{what}={number}" for what, number in gone.items()))

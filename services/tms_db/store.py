@@ -85,6 +85,7 @@ INDEXES: dict[str, list[tuple[list[tuple[str, int]], dict[str, Any]]]] = {
         ([("ended_at", ASCENDING)], {}),
     ],
     "event": [([("run_id", ASCENDING), ("number", ASCENDING)], {"unique": True})],
+    "recording": [([("machine", ASCENDING), ("begin", ASCENDING)], {"unique": True}), ([("begin", ASCENDING)], {})],
 }
 # GridFS makes these with its first file, but not in collections that have files already, as after a restore.
 GRIDFS: dict[str, list[tuple[list[tuple[str, int]], dict[str, Any]]]] = {

@@ -130,7 +130,7 @@ def _stored(app: FastAPI, client: "SiteClient") -> None:
         response_class=Response,
     )
     def run_export(run_id: RunId, form: Literal["json", "csv", "mcap"] = "json") -> Response:
-        found = _all_events(client, run_id)
+        found = all_events(client, run_id)
         name = f'attachment; filename="{run_id}.{form}"'
         return Response(export.FORMS[form](run_id, found), 200, {"Content-Disposition": name}, export.TYPES[form])
 
@@ -225,7 +225,8 @@ def _scenes(app: FastAPI, client: "SiteClient", site: Site) -> None:
         return client.scene(name)
 
 
-def _all_events(client: "SiteClient", run_id: str) -> list[Event]:
+def all_events(client: "SiteClient", run_id: str) -> list[Event]:
+    """The journal of a run; where it is too long for an export, the last entry says so."""
     found: list[Event] = []
     while len(found) < MAX_EVENTS:
         page = client.events(run_id, found[-1].number if found else 0, PAGE)

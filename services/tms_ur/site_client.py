@@ -47,6 +47,8 @@ from tms_ur.models import AddedTemplate, Event, Host, Place, Rearmed, Receipt, R
 from tms_ur.place_client import PlaceClient
 from tms_ur.reason_view import of_error, of_line, view
 from tms_ur.reasons import UnknownProcess
+from tms_ur.recording_client import Asked, recording
+from tms_ur.recording_models import Recording
 from tms_ur.run_calls import CALL_LIMIT, RunCalls
 from tms_ur.scene_models import Scene, scene
 from tms_ur.watch_models import AreasChecked
@@ -158,6 +160,10 @@ class SiteClient(RunCalls):
         """The events of a run with a number above `after`."""
         answer = self._ask(ListEvents, "/tms/db/list_events", run_id=run_id, after=after, limit=limit)
         return [messages.event(event) for event in answer.events]
+
+    def recording(self, asked: Asked) -> Recording:
+        """What machines told while runs were active."""
+        return recording(self._ros, asked)
 
     def parameters(self, model_name: str) -> list[Record]:
         """Records of one machine; with an empty name, of all."""

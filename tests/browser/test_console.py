@@ -9,6 +9,7 @@ import pytest
 from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import Browser, Page, Request, Route, expect
 
+from browsers import LIMIT, ask
 from conftest import Mesh, wait_until
 from tms_ur.api import STATIC
 
@@ -213,6 +214,12 @@ def test_history_replays_a_stopped_run(page: Page, address: str, idle: Mesh) -> 
         link = page.locator("#exports a", has_text=form.upper()).get_attribute("href")
         with urllib.request.urlopen(address + str(link), timeout=30) as answer:
             assert len(answer.read()) > 200, form
+    run = page.url.partition("#history/")[2].partition("/")[0]
+    told = f"/api/recordings?run_id={run}&machine=zx200"
+    wait_until(lambda: ask(address, told)["series"], LIMIT, "the recorder has stored what the run was")
+    page.reload()
+    expect(page.locator("#list_motion [data-machine=zx200]")).to_contain_text("swing_joint")
+    expect(page.locator("#motion .plot canvas").first).to_be_visible()
 
 
 def test_a_question_is_answered(page: Page, address: str, idle: Mesh, tmp_path: Path) -> None:

@@ -310,6 +310,39 @@ def test_the_cursor_of_a_run_goes_by_time(page: Page, address: str, yard: Yard) 
     expect(page.get_by_role("link", name="Link to this moment")).to_have_attribute("href", "#history/r-1/10.0")
 
 
+def test_what_machines_did_is_on_the_cursor(page: Page, address: str, yard: Yard) -> None:
+    """Map, numbers, plots and 3D at the same moment as the tree; a click on a plot goes there."""
+    ends = [Event(number=2, stamp=NOON + timedelta(seconds=8), kind="run", node="", text="ended")]
+    yard.journals = {"r-1": [event(1, "tree", **SHAPE), *ends]}
+    page.goto(f"{address}/#history/r-1/2")
+    row = page.locator("#list_motion tr")
+    expect(row).to_have_text("zx2002.00, 2.001.001.00swing_joint 0.20, boom_joint -0.50")
+    mark = page.locator("#map_box [data-machine=zx200] polygon").first
+    drawn = mark.get_attribute("points")
+    expect(page.locator("#motion .plot canvas")).to_have_count(3)
+    expect(page.locator("#slider")).to_have_attribute("max", "100")  # the machine went on for a while
+    page.locator("#slider").fill("60")
+    expect(row).to_contain_text("6.00, 2.00")
+    expect(mark).not_to_have_attribute("points", drawn or "")
+    plot = page.locator("#motion .plot .u-over").first
+    box = plot.bounding_box()
+    assert box is not None
+    plot.click(position={"x": box["width"] / 2, "y": 20})
+    expect(row).to_contain_text(re.compile(r"(4\.[89]|5\.[0-2])\d, 2\.00"))
+    page.locator("#speed").select_option("16")
+    page.locator("#play").click()
+    expect(row).to_contain_text("10.00, 2.00")
+    page.locator("#past_3d").click()
+    expect(page.locator("#space")).to_have_attribute("data-pictures", re.compile(r"[1-9]"))
+    with page.expect_download() as download:
+        page.locator("#motion a", has_text="CSV").click()
+    assert len(Path(download.value.path()).read_text().splitlines()) == 102
+    assert Axe().run(page, {"include": [["#motion"]]}).violations_count == 0
+    yard.unrecorded = True
+    page.reload()
+    expect(page.locator("#none_recorded")).to_be_visible()
+
+
 def test_a_file_is_stored_as_a_template_under_its_name(page: Page, address: str, yard: Yard) -> None:
     yard.taken = True
     page.goto(f"{address}/#tasks")

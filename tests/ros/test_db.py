@@ -12,7 +12,7 @@ import pytest
 from builtin_interfaces.msg import Time
 from PIL import Image
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
-from sensor_msgs.msg import PointCloud2
+from sensor_msgs.msg import JointState, PointCloud2
 from tms_msg_db.msg import Event, Run, TmsdbGridFS
 from tms_msg_db.srv import (
     AddTask,
@@ -25,6 +25,7 @@ from tms_msg_db.srv import (
     ListRuns,
     ListTasks,
     ListTemplates,
+    ReadRecording,
     RemoveParameter,
     RemoveTask,
     RemoveTemplate,
@@ -35,10 +36,12 @@ from tms_msg_db.srv import (
     TmsdbTerrainImageSrv,
     WriteJournal,
 )
+from tms_msg_ts.msg import RunState, RunStates
 
 import programs
-from few_processes import LIMIT, Mesh, bare
+from few_processes import LIMIT, SITE, Mesh, bare
 from tms_areas.trackers import Tracker
+from tms_config.clock import unix_time
 from tms_config.config import CONFIGS
 from tms_db import store, store_address
 from tms_db.terrain import Terrain
@@ -63,10 +66,16 @@ def mesh(tmp_path: Path, own_domain: int) -> Iterator[Mesh]:
         yield mesh
 
 
+class OneMachine(Mesh):
+    """With a machine whose runs are recorded."""
+
+    SITE = SITE.replace("machines: {{}}", "machines: {{zx200: {{model: zx200}}}}")
+
+
 @pytest.fixture
 def bare_mesh(tmp_path: Path, own_domain: int) -> Iterator[Mesh]:
     """A mesh where nothing runs yet."""
-    yield from bare(tmp_path, own_domain, Mesh)
+    yield from bare(tmp_path, own_domain, OneMachine)
 
 
 TREE = '<root>\n  <BehaviorTree ID="A"><Action ID="X" model_name="zx200" say="a&#10;b"/></BehaviorTree>\n</root>'
@@ -289,14 +298,55 @@ def test_store_away_and_back(bare_mesh: Mesh) -> None:
     mesh.start("tms:store")
     mesh.wait_ready()
     assert mesh.db(AddTask, "add_task", task_sequence=TREE).task_id == 1
+    arm = Arm(mesh)
+    assert arm.readers() == 0, "no run: machines are not heard"
+    arm.begin()
+    mesh.until(lambda: arm.readers() == 1, "the recorder hears the arm")
     mesh.kill("tms:store")
+    lost = unix_time()
     assert mesh.db(GetTask, "get_task", task_id=1).error_code == "STORE_DOWN"
     begin = time.monotonic()
     for _ in range(10):
         assert mesh.db(ListTasks, "list_tasks").error_code == "STORE_DOWN"
     assert time.monotonic() - begin < 12  # known to be away: ten time-outs would take 30 s
     mesh.wait_away()
+    arm.end_run()
+    ended = unix_time()
     assert mesh.call(TmsdbGetTask, "tms_db_reader_task", task_id=1).task == ""
     mesh.start("tms:store")
     mesh.wait_ready()
     assert mesh.db(GetTask, "get_task", task_id=1).task.task_sequence == TREE
+    mesh.until(lambda: any(lost < time < ended for time in arm.recorded()), "what was told meanwhile is stored")
+    mesh.until(lambda: arm.readers() == 0, "the recorder has left")
+
+
+class Arm:
+    """A machine's arm and the scheduler's list of runs."""
+
+    def __init__(self, mesh: Mesh) -> None:
+        self._mesh, self._run = mesh, "run-1"
+        self._topic = f"/zx200/{mesh.site.border('zx200').joint_states}"
+        self._joints = mesh.ros.publisher(JointState, self._topic)
+        self._runs = mesh.ros.publisher(RunStates, "/tms/runs", latched=True)
+        self._names = mesh.site.model_of("zx200").driven
+
+    def begin(self) -> None:
+        """Tell, ten times a second, until the mesh ends."""
+        self._mesh.ros.every(0.1, self._tell)
+
+    def end_run(self) -> None:
+        self._run = ""
+
+    def _tell(self) -> None:
+        self._runs.publish(RunStates(runs=[RunState(run_id=self._run)] if self._run else []))
+        self._joints.publish(JointState(name=self._names, position=[0.25] * len(self._names)))
+
+    def readers(self) -> int:
+        return int(self._mesh.ros.node.count_subscribers(self._topic))
+
+    def recorded(self) -> list[float]:
+        """The times [s since 1970] that the database knows."""
+        found = self._mesh.db(ReadRecording, "read_recording", machine="zx200", points=20_000)
+        assert found.error_code == "" and {one.kind for one in found.series} <= {"joints"}
+        assert all(angle == 0.25 for one in found.series for angle in one.values)
+        return [time for one in found.series for time in one.times]

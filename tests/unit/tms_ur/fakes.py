@@ -29,6 +29,8 @@ from tms_ur.data_models import Change, Record, Sensing, SensingInput
 from tms_ur.ground_models import Ground
 from tms_ur.models import AddedTemplate, Event, Rearmed, Receipt, Run, Task, TaskText, Template
 from tms_ur.reason_view import of_line, view
+from tms_ur.recording_client import Asked
+from tms_ur.recording_models import Recording, Series
 from tms_ur.scene_models import Scene, scene
 from tms_ur.start_models import ResumePlan
 from tms_ur.watch_models import AreaChange, AreasChecked, EnabledAreas
@@ -75,6 +77,7 @@ class FakeSiteClient:
         self.palette = ""
         self.error: TmsError | None = None
         self.calls: list[tuple[object, ...]] = []
+        self.unrecorded = False  # runs of before there were recordings
         self.shared = FakePlaces(self)
 
     def tasks(self) -> list[Task]:
@@ -109,6 +112,20 @@ class FakeSiteClient:
             Event(number=after + 1, stamp=NOON, kind="run", node="", text="running", values={"n": 1}),
             Event(number=after + 2, stamp=NOON, kind="tree", node="", text="1 node", values=shape),
         ]
+
+    def recording(self, asked: Asked) -> Recording:
+        """An arm that moves while its machine drives 10 m east, for 10 s from noon on."""
+        self._called("recording", asked)
+        since = NOON.timestamp()
+        times = [since + tick / 10 for tick in range(101)]
+        arm = Series(machine="zx200", kind="joints", names=["swing_joint", "boom_joint"], times=times,
+                     values=[[tick / 100 for tick in range(101)], [-0.5] * 101])  # fmt: skip
+        way = Series(machine="zx200", kind="pose", names=["x", "y", "yaw"], times=times[::2],
+                     values=[[tick / 5 for tick in range(51)], [2.0] * 51, [0.5] * 51])  # fmt: skip
+        load = Series(machine="zx200", kind="load", names=["mass", "bank", "loose"], times=times[::10],
+                      values=[[0.0, *[1600.0] * 10], [0.0, *[0.8] * 10], [0.0, *[1.0] * 10]])  # fmt: skip
+        inside = asked.begin <= since <= (asked.end or since)
+        return Recording(series=[arm, load, way] if inside and not self.unrecorded else [])
 
     def parameters(self, model_name: str) -> list[Record]:
         self._called("parameters", model_name)

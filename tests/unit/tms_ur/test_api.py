@@ -1,12 +1,20 @@
 """Every endpoint, every error, and what stands before them, with a site that is a fake."""
 
+import csv
 import inspect
+import io
+import math
+from collections import Counter
 from collections.abc import AsyncIterator
 from datetime import datetime, timedelta
+from pathlib import Path
 
 import pytest
 from builtin_interfaces.msg import Time
 from fastapi import FastAPI
+from mcap.reader import make_reader
+from rosbags.rosbag2 import Reader
+from rosbags.typesys import Stores, get_typestore
 from tms_msg_areas import msg as areas
 
 from tms_config.clock import utc_now
@@ -18,13 +26,14 @@ from tms_reason.wire import to_line
 from tms_ur import messages
 from tms_ur.models import ActiveRun, Event, Host, Joint, Machine, Process
 from tms_ur.reason_view import view
+from tms_ur.recording_client import Asked
 from tms_ur.security import SECURITY, is_loopback
 from unit.tms_ur import fakes
-from unit.tms_ur.fakes import HERE, XML, Client, FakeAudit, FakeSiteClient, WrongLine, app
+from unit.tms_ur.fakes import HERE, NOON, XML, Client, FakeAudit, FakeSiteClient, WrongLine, app
 
 READS = [
     "/api/tasks", "/api/tasks/4", "/api/runs", "/api/runs/r-1/events", "/api/runs/r-1/tree", "/api/runs/r-1/export",
-    "/api/parameters", "/api/audit", "/api/processes/zx200:rc/log", "/api/templates",
+    "/api/parameters", "/api/audit", "/api/processes/zx200:rc/log", "/api/templates", "/api/recordings",
 ]  # fmt: skip
 RECORD = {"model_name": "zx200", "record_name": "pose", "fields": [{"name": "a", "type": "double", "value": 3}]}
 COMMANDS = [
@@ -308,6 +317,66 @@ def test_exports(client: Client, form: str, begins: bytes) -> None:
     answer = client.get(f"/api/runs/r-1/export?form={form}")
     assert answer.content.startswith(begins)
     assert answer.headers["content-disposition"] == f'attachment; filename="r-1.{form}"'
+
+
+def test_a_recording_by_run_or_time(client: Client, site_client: FakeSiteClient) -> None:
+    series = client.get("/api/recordings?run_id=r-1&points=500").json()["series"]
+    assert [(one["machine"], one["kind"], len(one["times"])) for one in series] == [
+        ("zx200", "joints", 101), ("zx200", "load", 11), ("zx200", "pose", 51),
+    ]  # fmt: skip
+    assert [len(values) for values in series[0]["values"]] == [101, 101]
+    client.get("/api/recordings?end=5e8&machine=zx200")
+    later = NOON.timestamp() + 3600
+    assert client.get(f"/api/recordings?begin={later}").json() == {"series": []}
+    assert site_client.calls == [
+        ("recording", Asked("r-1", 0, 0, "", 500)), ("recording", Asked("", 0, 5e8, "zx200", 2000)),
+        ("recording", Asked("", later, 0, "", 2000)),
+    ]  # fmt: skip
+    assert client.get("/api/recordings?points=1").status_code == 422
+
+
+def test_a_recording_as_a_table(client: Client, site_client: FakeSiteClient) -> None:
+    answer = client.get("/api/recordings/r-1/export?form=csv")
+    assert answer.headers["content-disposition"] == 'attachment; filename="r-1-motion.csv"'
+    rows = list(csv.reader(io.StringIO(answer.content.decode("utf-8-sig"))))
+    assert rows[0] == [
+        "time", "zx200/boom_joint [rad]", "zx200/swing_joint [rad]", "zx200/bank [m3]", "zx200/loose [m3]",
+        "zx200/mass [kg]", "zx200/x [m]", "zx200/y [m]", "zx200/yaw [rad]",
+    ]  # fmt: skip
+    assert len(rows) == 102
+    assert rows[1] == ["2026-01-31T12:00:00.000+00:00", "-0.5", "0.0", "0.0", "0.0", "0.0", "0.0", "2.0", "0.5"]
+    assert rows[2] == ["2026-01-31T12:00:00.100+00:00", "-0.5", "0.01", "", "", "", "", "", ""]
+    site_client.unrecorded = True
+    assert client.get("/api/recordings/r-1/export?form=csv").content.decode("utf-8-sig") == "time\r\n"
+
+
+def test_a_recording_for_foxglove_and_rosbag2(client: Client, site_client: FakeSiteClient, tmp_path: Path) -> None:
+    file = tmp_path / "r-1.mcap"
+    file.write_bytes(client.get("/api/recordings/r-1/export").content)
+    with file.open("rb") as opened:
+        found = Counter(channel.topic for _, channel, _ in make_reader(opened).iter_messages())
+    assert found == {"/tms/events": 2, "/zx200/joint_states": 101, "/zx200/pose": 51, "/tf": 152,
+                     **{f"/zx200/load/{name}": 11 for name in ("mass", "bank", "loose")}}  # fmt: skip
+    with Reader(file) as bag:
+        types = get_typestore(Stores.ROS2_JAZZY)
+        told = [(one.topic, types.deserialize_cdr(data, one.msgtype)) for one, _, data in bag.messages()]
+    events = [(message.line, message.name, message.msg) for topic, message in told if topic == "/tms/events"]
+    assert events == [(1, "run", "running"), (2, "tree", "1 node")]
+    assert [message.data for topic, message in told if topic == "/zx200/load/mass"] == [0.0, *[1600.0] * 10]
+    arm = [message for topic, message in told if topic == "/zx200/joint_states"][50]
+    assert (arm.name, arm.position.tolist()) == (["swing_joint", "boom_joint"], [0.5, -0.5])
+    (links, *_) = [message.transforms for topic, message in told if topic == "/tf" and len(message.transforms) > 1][50:]
+    swing = links[1].transform.rotation
+    assert (links[1].header.frame_id, links[1].child_frame_id) == ("zx200/track_link", "zx200/body_link")
+    assert (swing.x, swing.y, abs(swing.z)) == pytest.approx((0.0, 0.0, math.sin(0.25)), abs=1e-9)
+    base = [message.transforms[0] for topic, message in told if topic == "/tf" and len(message.transforms) == 1][-1]
+    assert (base.header.frame_id, base.child_frame_id) == ("map", "zx200/base_link")
+    assert (base.transform.translation.x, base.transform.translation.y) == (10.0, 2.0)
+
+
+def test_a_recording_that_cannot_be_read_is_no_file(client: Client, site_client: FakeSiteClient) -> None:
+    site_client.error = TmsError(Foreign("away"), "STORE_DOWN")
+    assert client.get("/api/recordings/r-1/export").status_code == 503
 
 
 @pytest.mark.parametrize(
@@ -639,6 +708,7 @@ def test_every_endpoint_is_in_the_document(client: Client) -> None:
         "/api/processes/{name}/log", "/api/processes/{name}/restart",
         "/api/templates", "/api/areas", "/api/areas/check", "/api/areas/enable", "/api/ground",
         "/api/places", "/api/palette", "/api/templates/{name}", "/api/places/{name}/revoke",
+        "/api/recordings", "/api/recordings/{run_id}/export",
     }  # fmt: skip
     assert {method for path in document["paths"].values() for method in path} == {
         "get",

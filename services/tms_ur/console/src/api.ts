@@ -434,6 +434,40 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/recordings": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** Joints, poses and loads of machines while runs were active */
+        get: operations["recordings_api_recordings_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/recordings/{run_id}/export": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** The recording of a run as a table, or with its journal as MCAP for Foxglove and rosbag2 */
+        get: operations["export_api_recordings__run_id__export_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/runs/{run_id}/cancel": {
         parameters: {
             query?: never;
@@ -1638,6 +1672,17 @@ export interface components {
             type: "" | "static" | "dynamic";
         };
         /**
+         * Recording
+         * @description A time that was recorded; without series nothing of it is known.
+         */
+        Recording: {
+            /**
+             * Series
+             * @description by machine
+             */
+            series: components["schemas"]["Series"][];
+        };
+        /**
          * ResumePlan
          * @description What resuming an interrupted run would do first.
          */
@@ -1884,6 +1929,34 @@ export interface components {
              * @description written so far
              */
             records: string[];
+        };
+        /**
+         * Series
+         * @description What one machine told.
+         */
+        Series: {
+            /** Machine */
+            machine: string;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            kind: "joints" | "pose" | "load";
+            /**
+             * Names
+             * @description joints: rad; x and y in map: m, yaw: rad; mass: kg, bank and loose: m3
+             */
+            names: string[];
+            /**
+             * Times
+             * @description s since 1970, rising
+             */
+            times: number[];
+            /**
+             * Values
+             * @description a list for each name, a value for each time
+             */
+            values: number[][];
         };
         /**
          * Session
@@ -4492,6 +4565,171 @@ export interface operations {
             };
             /** @description there is no such thing */
             404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description a value is wrong */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description a module of the site is away or does not answer */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+        };
+    };
+    recordings_api_recordings_get: {
+        parameters: {
+            query?: {
+                /** @description of this run; empty: from begin to end */
+                run_id?: string;
+                /** @description s since 1970 */
+                begin?: number;
+                /** @description s since 1970; 0: up to now */
+                end?: number;
+                /** @description empty: all */
+                machine?: string;
+                /** @description of a series; of more, some at equal distances */
+                points?: number;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Recording"];
+                };
+            };
+            /** @description the request cannot be read */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description log in first */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description there is no such thing */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description refused; the message says why */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description a value is wrong */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description a module of the site is away or does not answer */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+        };
+    };
+    export_api_recordings__run_id__export_get: {
+        parameters: {
+            query?: {
+                form?: "csv" | "mcap";
+            };
+            header?: never;
+            path: {
+                /** @description id of a run */
+                run_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/csv; charset=utf-8": unknown;
+                    "application/octet-stream": unknown;
+                };
+            };
+            /** @description the request cannot be read */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description log in first */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description there is no such thing */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description refused; the message says why */
+            409: {
                 headers: {
                     [name: string]: unknown;
                 };

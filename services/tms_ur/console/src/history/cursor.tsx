@@ -1,7 +1,7 @@
 // The cursor of the time line: a slider in tenths of a second, play with a speed, the stops, and a link to the moment.
 import { useEffect, useState } from "react";
 import { useTranslation } from "react-i18next";
-import { beginOf, endOf, type Journal } from "../journal/journal";
+import { beginOf, type Journal } from "../journal/journal";
 import { clock } from "../texts";
 import { stopsOf } from "./lanes";
 
@@ -11,11 +11,12 @@ const SPEEDS = [1, 4, 16, 60];
 interface Props {
   run: string;
   journal: Journal;
+  end: number; // ms since the epoch, of the time line
   time: number; // ms since the epoch
   onTime: (time: number) => void;
 }
 
-export function Cursor({ run, journal, time, onTime }: Props) {
+export function Cursor({ run, journal, end, time, onTime }: Props) {
   const { t } = useTranslation();
   const begin = beginOf(journal);
   const shown = clock(new Date(time).toISOString());
@@ -23,7 +24,7 @@ export function Cursor({ run, journal, time, onTime }: Props) {
   return (
     <>
       <div className="bar">
-        <Play time={time} end={endOf(journal)} onTime={onTime} />
+        <Play time={time} end={end} onTime={onTime} />
         <Jumps stops={stopsOf(journal)} time={time} onTime={onTime} />
         <a className="button" href={`#history/${encodeURIComponent(run)}/${seconds}`}>
           {t("moment_link")}
@@ -36,7 +37,7 @@ export function Cursor({ run, journal, time, onTime }: Props) {
           type="range"
           id="slider"
           min={0}
-          max={Math.ceil((endOf(journal) - begin) / STEP)}
+          max={Math.ceil((end - begin) / STEP)}
           value={Math.round((time - begin) / STEP)}
           aria-valuetext={shown}
           onChange={(event) => onTime(begin + Number(event.target.value) * STEP)}

@@ -66,7 +66,9 @@ test("each machine has a lane of what it did", () => {
 
 test("the cursor jumps to stops, links to its moment, and plays to the end", async () => {
   const onTime = vi.fn();
-  const { rerender } = render(<Cursor run="r-1" journal={JOURNAL} time={BEGIN + 2500} onTime={onTime} />);
+  const { rerender } = render(
+    <Cursor run="r-1" journal={JOURNAL} end={BEGIN + 5000} time={BEGIN + 2500} onTime={onTime} />,
+  );
   fireEvent.click(screen.getByRole("button", { name: "Next stop" }));
   fireEvent.click(screen.getByRole("button", { name: "Stop before" }));
   expect(onTime.mock.calls.flat()).toEqual([BEGIN + 5000, BEGIN + 2000]);
@@ -75,6 +77,6 @@ test("the cursor jumps to stops, links to its moment, and plays to the end", asy
   fireEvent.change(screen.getByRole("combobox"), { target: { value: "60" } });
   fireEvent.click(screen.getByRole("button", { name: /Play/ }));
   await waitFor(() => expect(onTime).toHaveBeenCalledWith(BEGIN + 5000)); // and not beyond it
-  rerender(<Cursor run="r-1" journal={JOURNAL} time={BEGIN + 5000} onTime={onTime} />);
+  rerender(<Cursor run="r-1" journal={JOURNAL} end={BEGIN + 5000} time={BEGIN + 5000} onTime={onTime} />);
   expect(screen.getByRole("button", { name: /Play/ }).getAttribute("aria-pressed")).toBe("false");
 });

@@ -1,6 +1,6 @@
 // The lanes of the machines under the slider, with the stops and the cursor.
 import { useTranslation } from "react-i18next";
-import { beginOf, endOf, type Journal } from "../journal/journal";
+import { beginOf, type Journal } from "../journal/journal";
 import { WORDS } from "../tree/node_box";
 import { type Bar, type Lane, lanesOf, stopsOf } from "./lanes";
 
@@ -9,13 +9,14 @@ const HIGH = 20;
 
 interface Props {
   journal: Journal;
+  end: number; // ms, of the time line
   time: number; // ms, of the cursor
   onTime: (time: number) => void;
 }
 
-export function LaneView({ journal, time, onTime }: Props) {
+export function LaneView({ journal, end, time, onTime }: Props) {
   const begin = beginOf(journal);
-  const long = Math.max(1, endOf(journal) - begin);
+  const long = Math.max(1, end - begin);
   const at = (moment: number) => ((moment - begin) / long) * WIDE;
   const stops = stopsOf(journal).map(at);
   const chosen = (event: React.MouseEvent) => {

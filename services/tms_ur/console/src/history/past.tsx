@@ -1,5 +1,5 @@
 // The time line of one run: tree, machines, stops and journal at one cursor.
-import { useEffect, useRef, useState } from "react";
+import { useEffect, useMemo, useRef, useState } from "react";
 import { useTranslation } from "react-i18next";
 import { beginOf, countAt, endOf, type Journal } from "../journal/journal";
 import { momentAfter } from "../journal/replay";
@@ -14,6 +14,9 @@ import type { TreeNode } from "../tree/shape";
 import { Cursor } from "./cursor";
 import { Events, textOf } from "./events";
 import { LaneView } from "./lane_view";
+import { Motion } from "./motion";
+import { recordedUntil } from "./recording";
+import { useRecording } from "./use_recording";
 
 const FORMS = ["json", "csv", "mcap"];
 
@@ -25,16 +28,17 @@ interface Props {
 
 export function Past({ id, run, seconds }: Props) {
   const { state } = useLive();
-  const { journal, error } = useJournal(id, state?.runs.some((one) => one.run_id === id) ?? false);
+  const live = state?.runs.some((one) => one.run_id === id) ?? false;
+  const { journal, error } = useJournal(id, live);
   return (
     <>
       <Problem id="past_problem" error={error} />
-      {journal && <Line id={id} run={run} seconds={seconds} journal={journal} />}
+      {journal && <Line id={id} run={run} seconds={seconds} journal={journal} live={live} />}
     </>
   );
 }
 
-function Line({ id, run, seconds, journal }: Props & { journal: Journal }) {
+function Line({ id, run, seconds, journal, live }: Props & { journal: Journal; live: boolean }) {
   const { t } = useTranslation();
   const section = useRef<HTMLElement>(null);
   const [chosen, setChosen] = useState<number | null>(null); // null: the end, also while the run goes on
@@ -44,7 +48,9 @@ function Line({ id, run, seconds, journal }: Props & { journal: Journal }) {
     setChosen(Number.isFinite(asked) ? begin + asked * 1000 : null);
   }, [seconds, begin]);
   useEffect(() => void section.current?.scrollIntoView(), []);
-  const time = Math.min(chosen ?? endOf(journal), endOf(journal));
+  const { recording, error } = useRecording(id, live);
+  const end = useMemo(() => Math.max(endOf(journal), recordedUntil(recording)), [journal, recording]);
+  const time = Math.min(chosen ?? end, end);
   return (
     <section id="past" ref={section}>
       <h2 id="past_title">{`${t("run")} ${id}`}</h2>
@@ -55,10 +61,16 @@ function Line({ id, run, seconds, journal }: Props & { journal: Journal }) {
         {journal.cut ? t("journal_cut", { number: journal.events.length }) : ""}
       </p>
       <div className="cursor">
-        <Cursor run={id} journal={journal} time={time} onTime={setChosen} />
-        <LaneView journal={journal} time={time} onTime={setChosen} />
+        <Cursor run={id} journal={journal} end={end} time={time} onTime={setChosen} />
+        <LaneView journal={journal} end={end} time={time} onTime={setChosen} />
       </div>
       <PastTree journal={journal} time={time} />
+      <h3>{t("motion")}</h3>
+      <Problem id="motion_problem" error={error} />
+      {recording?.series.length === 0 && <p id="none_recorded">{t(live ? "none_recorded_yet" : "none_recorded")}</p>}
+      {recording && recording.series.length > 0 && (
+        <Motion run={id} recording={recording} time={time} onTime={setChosen} />
+      )}
       <Events journal={journal} time={time} onTime={setChosen} />
     </section>
   );

@@ -42,14 +42,16 @@ export const MachineMark = memo(function MachineMark({ machine, body, letters }:
       <text className="name" x={place.x + 1} y={-place.y - 3.4} fontSize={letters}>
         {machine.name} {mark(known)}
       </text>
-      <circle
-        className={`lamp ${machine.lamp}`}
-        cx={place.x + 0.4}
-        cy={-place.y - 3.4 - letters * 0.35}
-        r={letters * 0.3}
-      >
-        <title>{t(`lamp_${machine.lamp}`)}</title>
-      </circle>
+      {machine.lamp && ( // nobody records them: the past has none
+        <circle
+          className={`lamp ${machine.lamp}`}
+          cx={place.x + 0.4}
+          cy={-place.y - 3.4 - letters * 0.35}
+          r={letters * 0.3}
+        >
+          <title>{t(`lamp_${machine.lamp}`)}</title>
+        </circle>
+      )}
     </>
   );
 });

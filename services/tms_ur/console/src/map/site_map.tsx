@@ -125,7 +125,7 @@ export function SiteMap({ state, bodies, inSpace }: Props) {
   );
 }
 
-function Zooms({ zoom, fit }: { zoom: (factor: number) => void; fit: () => void }) {
+export function Zooms({ zoom, fit }: { zoom: (factor: number) => void; fit: () => void }) {
   const { t } = useTranslation();
   return (
     <>
