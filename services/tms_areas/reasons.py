@@ -2,7 +2,7 @@
 
 from tms_reason.quantities import Metres, MetresPerSecond, Seconds, SquareMetres
 from tms_reason.reason import Reason
-from tms_reason.remedies import EDIT_CONFIG, ESCAPE, INSPECT, Remedy
+from tms_reason.remedies import EDIT_CONFIG, ESCAPE, INSPECT, RESTART, Remedy
 
 DRAW_AGAIN = Remedy("draw", "", "Draw the area again, and export the file anew")
 CHECK_AGAIN = Remedy("check", "", "Check the areas again")
@@ -43,6 +43,8 @@ class NoUnmanned(Reason, text="no area is unmanned: no machine could move anywhe
 class NothingUsable(Reason, text="other areas cover every unmanned one: no machine could move anywhere",
     action=EDIT_CONFIG): pass
 class AreasNotEnabledBy(Reason, text="{machine} refuses the areas: {why}"): machine: str; why: Reason
+class AreasNotReached(Reason, text="the gateway of {machine} tells nothing of areas: {why}", action=RESTART):
+    machine: str; why: Reason; process: str
 class AreasNotShown(Reason, text="these are other areas than those that were checked", action=CHECK_AGAIN): pass
 
 # people and vehicles

@@ -1,24 +1,19 @@
 """What the verbs of `tms areas` share: the areas of the site's files and of its gateways, and how they differ."""
 
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tms_areas.reasons import AreasNotEnabledBy
 from tms_cli import session
-from tms_cli.reasons import AreaFileUnread, AreasNotReached, NoAreas
+from tms_cli.reasons import AreaFileUnread, NoAreas
 from tms_cli.words import padded, say
 from tms_config.config import Site
-from tms_reason import wire
 from tms_reason.errors import RosError, TmsError
-from tms_reason.reason import Foreign, Reason
+from tms_ur import gateway_areas
 
 if TYPE_CHECKING:
     from tms_areas.areas import Area, AreaSet
     from tms_areas.geojson import ToMap
     from tms_ros.node import Ros
-
-LIMIT = 5.0  # s for a gateway to answer; it writes the set to its disk before it does
 
 
 def configured(site: Site) -> "AreaSet":
@@ -71,56 +66,12 @@ def enabled(node: "Ros", machine: str) -> "tuple[str, AreaSet | None]":
 
     request = GetParameters.Request(names=["who", "areas"])
     try:
-        who, areas = node.call(GetParameters, f"/{machine}/rc/areas/get", request, LIMIT).values
+        who, areas = node.call(GetParameters, f"/{machine}/rc/areas/get", request, gateway_areas.LIMIT).values
     except RosError as error:
-        raise TmsError(AreasNotReached(machine, error.reason, f"{machine}:rc")) from error
+        raise gateway_areas.not_reached(machine, error) from error
     if not areas.string_value:
         return "", None
     return who.string_value, gathered([read(areas.string_value, machine, None)])
-
-
-def enable(node: "Ros", machine: str, areas: "AreaSet", who: str, only_check: bool) -> None:
-    """Have a gateway enable areas, or only say whether it would.
-
-    Raises:
-        TmsError: it does not answer, or refuses.
-    """
-    from tms_areas.geojson import written
-
-    document = json.dumps(written(areas), ensure_ascii=False)
-    refused = _ask(node, machine, "set", id=areas.id, areas=document, who=who, only_check=only_check)
-    if refused is not None:
-        raise TmsError(AreasNotEnabledBy(machine, refused))
-
-
-def let_back(node: "Ros", machine: str, who: str) -> None:
-    """Have a gateway let its machine, which stands outside, be moved back in.
-
-    Raises:
-        TmsError: it does not answer, or refuses.
-    """
-    refused = _ask(node, machine, "escape", who=who)
-    if refused is not None:
-        raise TmsError(refused)
-
-
-def _ask(node: "Ros", machine: str, what: str, **told: str | bool) -> Reason | None:
-    """Ask a gateway for something about areas; returns why it refuses."""
-    from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
-    from rcl_interfaces.srv import SetParametersAtomically
-
-    def value(one: str | bool) -> ParameterValue:
-        if isinstance(one, bool):
-            return ParameterValue(type=ParameterType.PARAMETER_BOOL, bool_value=one)
-        return ParameterValue(type=ParameterType.PARAMETER_STRING, string_value=one)
-
-    parameters = [Parameter(name=name, value=value(one)) for name, one in told.items()]
-    request = SetParametersAtomically.Request(parameters=parameters)
-    try:
-        answer = node.call(SetParametersAtomically, f"/{machine}/rc/areas/{what}", request, LIMIT).result
-    except RosError as error:
-        raise TmsError(AreasNotReached(machine, error.reason, f"{machine}:rc")) from error
-    return None if answer.successful else wire.of(answer.reason) or Foreign(answer.reason)
 
 
 def as_dict(one: "Area") -> dict[str, Any]:

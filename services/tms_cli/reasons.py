@@ -2,7 +2,7 @@
 
 from tms_reason.quantities import Megabytes, Seconds
 from tms_reason.reason import Reason
-from tms_reason.remedies import LOGS, PROCESSES, RECORDS, RESTART, RETRY, RUNS, STATUS, TASKS, Remedy
+from tms_reason.remedies import LOGS, PROCESSES, RECORDS, RETRY, RUNS, STATUS, TASKS, Remedy
 
 QUESTIONS = Remedy("questions", "tms answer", "See which questions are open")
 CHOOSE = Remedy("questions", "tms answer --question ID", "Choose one of them")
@@ -91,8 +91,6 @@ class NoAreas(Reason, text="the site has no areas: {folder} holds no .geojson fi
 class PlacesUntold(Reason, text="{process} does not tell who holds which place", action=PROCESSES): process: str
 class AreaFileUnread(Reason, text="{file} cannot be read ({problem})", action=OTHER_PLACE): file: str; problem: str
 class AreaFileThere(Reason, text="{file} is there already", action=OTHER_NAME): file: str
-class AreasNotReached(Reason, text="the gateway of {machine} tells nothing of areas: {why}", action=RESTART):
-    machine: str; why: Reason; process: str
 class NoBrowser(Reason, text="there is no chromium on this PC", action=OTHER_BROWSER): url: str
 class FieldValue(Reason, text="{where}, field {field}: {why}"): where: str; field: str; why: Reason
 class NotAFiniteNumber(Reason, text="{value} is not a finite number", action=FINITE): value: str

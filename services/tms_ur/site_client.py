@@ -36,9 +36,9 @@ from tms_reason import wire
 from tms_reason.errors import RosError, TmsError
 from tms_reason.reason import Reason
 from tms_ros.node import Ros
-from tms_ur import messages
+from tms_ur import gateway_areas, messages
 from tms_ur.answers import checked
-from tms_ur.area_client import check_areas, enable_areas, let_back
+from tms_ur.area_client import check_areas, enable_areas
 from tms_ur.board import Board
 from tms_ur.data_models import Change, Record, Sensing
 from tms_ur.ground_client import ground
@@ -219,7 +219,7 @@ class SiteClient(RunCalls):
 
     def let_back(self, machine: str, who: str) -> None:
         """Let a machine that stands outside its areas be moved back in; a TmsError says why not."""
-        let_back(self._ros, machine, who)
+        gateway_areas.let_back(self._ros, machine, who)
 
     def check_areas(self, areas: dict[str, Any]) -> AreasChecked:
         """What would change if these areas were enabled; a TmsError says what is wrong with them."""

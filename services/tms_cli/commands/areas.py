@@ -11,6 +11,7 @@ from tms_cli import area_sets, session
 from tms_cli.reasons import AreaFileThere, NameTaken
 from tms_cli.words import Group, padded, say
 from tms_reason.errors import TmsError
+from tms_ur import gateway_areas
 
 if TYPE_CHECKING:
     from tms_areas.changes import Change
@@ -102,9 +103,7 @@ def enable(who: str, yes: bool, as_json: bool) -> None:
         _tell({change for old in before.values() for change in changes(old, wanted)})
         if not yes:
             click.confirm(say("Enable these areas for all machines?"), abort=True, err=True)
-        for only_check in (True, False):
-            for machine in machines:
-                area_sets.enable(node, machine, wanted, who, only_check)
+        gateway_areas.enable(node, machines, wanted, who)
     click.echo(say("enabled: {id}", id=wanted.id[:12]), err=True)
     if as_json:
         session.show_json({"id": wanted.id, "by": who, "machines": machines})

@@ -74,10 +74,10 @@ def command(machines: tuple[str, ...], every: bool, escape: bool, who: str, yes:
 
 def _let_back(node: "Ros", machine: str, who: str, yes: bool) -> dict[str, Any]:
     """Re-arm a machine if it is stopped, and let it be moved back into its areas."""
-    from tms_cli import area_sets
+    from tms_ur import gateway_areas
 
     stopped = _rearm(node, machine, yes, optional=True)
-    area_sets.let_back(node, machine, who)
+    gateway_areas.let_back(node, machine, who)
     click.echo(say("{machine} may be moved back in, slowly", machine=machine), err=True)
     return {"machine": machine, "armed": True, "cause": stopped["cause"] if stopped else "", "escape": who}
 

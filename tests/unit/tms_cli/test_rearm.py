@@ -7,10 +7,10 @@ import pytest
 from click.testing import CliRunner
 from tms_msg_rc.srv import Rearm
 
-from tms_cli import area_sets
 from tms_cli.commands import rearm
 from tms_decision.reasons import NotStopped
 from tms_reason.errors import TmsError
+from tms_ur import gateway_areas
 
 
 @pytest.mark.parametrize(("answer", "steps"), [("n\n", [""]), ("y\n", ["", "t1"])])
@@ -29,7 +29,7 @@ def test_a_machine_is_let_back_once_it_is_armed(mesh: Any, monkeypatch: pytest.M
     monkeypatch.delenv("TMS_SITE", raising=False)
     steps: list[str] = []
     mesh.answers["/zx200/rearm"] = lambda token: steps.append(f"rearm {token}") or Rearm.Response(token="t1")
-    monkeypatch.setattr(area_sets, "let_back", lambda _, machine, who: steps.append(f"{machine} by {who}"))
+    monkeypatch.setattr(gateway_areas, "let_back", lambda _, machine, who: steps.append(f"{machine} by {who}"))
     end = CliRunner().invoke(rearm.command, ["zx200", "--escape", "--by", "mina", "--yes", "--json"])
     assert steps == ["rearm ", "rearm t1", "zx200 by mina"] and json.loads(end.stdout)["escape"] == "mina"
     mesh.answers["/zx200/rearm"] = TmsError(NotStopped("zx200"), "NOT_STOPPED")

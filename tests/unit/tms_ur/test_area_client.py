@@ -12,7 +12,8 @@ from tms_rc.area_request import AreaRequest, area_request, escape_request
 from tms_rc.reasons import NothingToEscape
 from tms_reason.errors import TmsError
 from tms_reason.wire import to_line
-from tms_ur.area_client import check_areas, enable_areas, let_back
+from tms_ur.area_client import check_areas, enable_areas
+from tms_ur.gateway_areas import let_back
 from tms_ur.watch_models import EnabledAreas
 
 
