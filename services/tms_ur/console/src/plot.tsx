@@ -6,6 +6,7 @@ import { type RefObject, useEffect, useRef } from "react";
 
 const HEIGHT = 280; // px
 const COLOURS = ["#0a6fd1", "#d35400", "#1e8449", "#8e44ad", "#b03a2e", "#117a8b", "#9a7d0a", "#5d6d7e"];
+const LEAST = 0.1; // rad, m/s, m3 between bottom and top: the noise of one that stands is not to fill the plot
 const DASHES = [[], [8, 4], [2, 3]]; // lines of one colour are told apart by these
 
 export interface Line {
@@ -61,7 +62,11 @@ function shared(now: Now): Partial<uPlot.Options> {
     return null;
   };
   const bind = { mousemove: none, mouseenter: none, mouseleave: none, mouseup: none, dblclick: none, mousedown };
-  return { cursor: { y: false, bind }, hooks: { ready: [again], setSize: [again] } };
+  const range = (_: uPlot, low: number, high: number): [number, number] => {
+    const more = Math.max((high - low) * 0.05, (LEAST - (high - low)) / 2);
+    return [low - more, high + more];
+  };
+  return { cursor: { y: false, bind }, scales: { y: { range } }, hooks: { ready: [again], setSize: [again] } };
 }
 
 function options(here: HTMLElement, lines: Line[], now: Now): uPlot.Options {

@@ -11,16 +11,17 @@ const Plot = lazy(() => import("../plot"));
 
 interface Props {
   run: string;
+  first: string; // the machine that is plotted at first, if it was recorded
   recording: Recording;
   time: number; // ms, of the cursor
   onTime: (time: number) => void;
 }
 
-export function Motion({ run, recording, time, onTime }: Props) {
+export function Motion({ run, first, recording, time, onTime }: Props) {
   const { t } = useTranslation();
   const machines = machinesOf(recording);
   const [asked, setAsked] = useState("");
-  const chosen = machines.includes(asked) ? asked : (machines[0] ?? "");
+  const chosen = [asked, first].find((one) => machines.includes(one)) ?? machines[0] ?? "";
   const plots = useMemo(() => plotsOf(recording, chosen), [recording, chosen]);
   const seconds = time / 1000;
   return (

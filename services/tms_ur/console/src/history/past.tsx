@@ -69,7 +69,7 @@ function Line({ id, run, seconds, journal, live }: Props & { journal: Journal; l
       <Problem id="motion_problem" error={error} />
       {recording?.series.length === 0 && <p id="none_recorded">{t(live ? "none_recorded_yet" : "none_recorded")}</p>}
       {recording && recording.series.length > 0 && (
-        <Motion run={id} recording={recording} time={time} onTime={setChosen} />
+        <Motion run={id} first={run?.machines[0] ?? ""} recording={recording} time={time} onTime={setChosen} />
       )}
       <Events journal={journal} time={time} onTime={setChosen} />
     </section>
