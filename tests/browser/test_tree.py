@@ -66,6 +66,10 @@ def test_a_node_that_is_clicked_on_opens_and_tells_more(page: Page, address: str
     expect(details).to_contain_text("R0.3.2")
     expect(details).to_contain_text("Running")
     expect(details).to_contain_text("Tries (0)")
+    expect(details.get_by_text("Blackboard (2)")).to_be_visible()
+    expect(page.locator("#node_blackboard dl")).to_be_hidden()  # it names no key itself
+    details.get_by_text("Blackboard (2)").click()
+    expect(page.locator("#node_blackboard dl")).to_contain_text('target"R7"')
     page.get_by_role("button", name="Fit").click()
     branch = page.locator("[data-path='0.4']")
     expect(branch).to_contain_text(f"(+{LEAVES})")
