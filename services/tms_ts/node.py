@@ -11,6 +11,7 @@ from tms_reason.reason import Reason
 from tms_reason.wire import to_line
 from tms_runtime.app import App
 from tms_ts.active_runs import ActiveRuns
+from tms_ts.blackboards import Blackboards
 from tms_ts.bt import palette
 from tms_ts.execution import Execution, Parts
 from tms_ts.gateways import Gateways
@@ -44,6 +45,7 @@ def start(app: App) -> None:
     app.ros.offer(AnswerQuestion, "/tms/answer", scheduler.answer)
     app.ros.publisher(String, "/tms/palette", depth=1, latched=True).publish(String(data=palette(builtin=True)))
     Permissions(parts.runs, parts.publisher.questions).serve(app)
+    Blackboards(parts.runs).serve(app)
     app.ros.every(MEASURE, scheduler.measure)
     app.on_stop(scheduler.close)
     app.ready_when(scheduler.unready)

@@ -24,6 +24,7 @@ from tms_ros.node import Ros
 from tms_ros.server import Goal
 from tms_runtime.log import Logger
 from tms_ts.bt import Status, Tree, TreeError
+from tms_ts.bt.blackboard import Blackboard
 from tms_ts.facts import Facts
 from tms_ts.flags import Flags
 from tms_ts.journal import Journal
@@ -69,6 +70,7 @@ class Run:
         self.record = record
         self.flags: Flags | None = None  # the flags of its tree
         self.places: RunPlaces | None = None  # and the shared places
+        self.boards: Mapping[str, Blackboard] = {}  # by the paths of its nodes
         self.number = 0  # number of the last event
         self._numbering = threading.Lock()  # the executor thread logs events, too
         self.nodes = NodeReport(facts, lambda node, what: self.log_event("node", node, what), changed)
@@ -162,6 +164,7 @@ class Run:
         }
         if any(node.template for node in nodes):
             values["templates"] = [node.template for node in nodes]
+        self.boards = {node.path: node.blackboard for node in nodes}
         self.log_event("tree", "", TreeOf(len(nodes)), values)
 
     def _report_to_client(self, tree: Tree, last: bool = False) -> None:

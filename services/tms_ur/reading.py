@@ -37,7 +37,7 @@ from tms_ur.problems import Viewer, problems
 from tms_ur.reason_view import view
 from tms_ur.reasons import JournalCut, NoTree
 from tms_ur.scene_models import Scene
-from tms_ur.start_models import ResumePlan, TaskMachines
+from tms_ur.start_models import BlackboardNow, ResumePlan, TaskMachines
 from tms_ur.state_models import State
 from tms_ur.stream import Stream, StreamResponse
 from tms_ur.task_machines import machines_of
@@ -62,6 +62,7 @@ ProcessName = Annotated[str, Path(pattern=r"^[0-9A-Za-z_]{1,64}:[0-9A-Za-z_]{1,6
 def add(app: FastAPI, client: "SiteClient", audit: "Audit", site: Site) -> None:
     """Add these endpoints to the application."""
     _live(app, client, site)
+    _seen(app, client)
     _stored(app, client)
     _audit(app, client, audit)
     _data(app, client)
@@ -101,6 +102,12 @@ def _live(app: FastAPI, client: "SiteClient", site: Site) -> None:
         name: ProcessName, size: Annotated[int, Query(ge=100, le=200_000, description="bytes at most")] = 16_384
     ) -> Log:
         return Log(text=client.log(name, size))
+
+
+def _seen(app: FastAPI, client: "SiteClient") -> None:
+    @app.get("/api/runs/{run_id}/blackboard", summary="What a node sees of the blackboard now", responses=problems(503))
+    def blackboard(run_id: RunId, node: Annotated[str, Query(pattern=r"^0(\.[0-9]{1,6}){0,200}$")]) -> BlackboardNow:
+        return BlackboardNow(values=client.blackboard(run_id, node))
 
 
 def _stored(app: FastAPI, client: "SiteClient") -> None:

@@ -1,7 +1,9 @@
 """Runs as the API commands them: blocking calls of the scheduler, for worker threads."""
 
+import json
 from typing import Any
 
+from rcl_interfaces.srv import GetParameters
 from tms_msg_ts import srv
 from tms_msg_ts.action import ExecuteTask
 
@@ -62,6 +64,17 @@ class RunCalls:
         """
         found = self._ask(srv.ResumePlan, "/tms/resume_plan", run_id=run_id)
         return ResumePlan(task_id=found.task_id, done=list(found.done), next=list(found.next))
+
+    def blackboard(self, run_id: str, node: str) -> dict[str, Any]:
+        """What the node at a path of an active run sees of what others have written; nothing of a run that is over.
+
+        Raises:
+            TmsError: the scheduler is away.
+        """
+        request = GetParameters.Request(names=[run_id, node])
+        check_sent("/tms/blackboard", request)
+        (found,) = self._ros.call(GetParameters, "/tms/blackboard", request, CALL_LIMIT).values
+        return dict(json.loads(found.string_value)) if found.string_value else {}
 
     def abandon_run(self, run_id: str) -> None:
         """Give up an interrupted run for good.

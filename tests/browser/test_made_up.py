@@ -401,3 +401,32 @@ def test_a_task_is_drawn_checked_and_saved(
     assert description == "dig | first"
     assert DRAWN in str(stored)
     assert check(str(stored)).errors == []
+
+
+def test_a_leaf_gets_a_new_record_from_its_form(
+    page: Page, address: str, yard: Yard, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """By its fields, and by a place on the map."""
+    monkeypatch.setattr(yard, "check_task", structural)
+    yard.palette = palette(builtin=True)
+    yard.board.put_place("ic120", Place(x=1.0, y=2.0, yaw=0.0))
+    page.goto(f"{address}/#editor/new")
+    page.get_by_text("ic120", exact=True).first.click()
+    page.get_by_role("button", name="st_ic120_navigate_anywhere", exact=True).click()
+    form = page.get_by_role("region", name="Chosen node")
+    form.get_by_role("button", name="New record", exact=True).first.click()
+    made = page.get_by_role("region", name="New record")
+    expect(made.get_by_label("Machine")).to_have_value("ic120")
+    made.get_by_label("Record").fill("HOME")
+    made.get_by_label("Field").fill("x")
+    made.get_by_label("Values").fill("1.5")
+    made.get_by_role("button", name="Save").click()
+    expect(form.get_by_label("record_name", exact=True)).to_have_value("HOME")
+    form.get_by_role("button", name="New record from the map").first.click()
+    page.locator("#map_box").click()
+    place = page.get_by_role("region", name="Make this place a record")
+    place.get_by_label("Name of the record").fill("HERE")
+    place.get_by_role("button", name="Save").click()
+    expect(form.get_by_label("record_name", exact=True)).to_have_value("HERE")
+    written = [call for call in yard.calls if call[0] == "set_parameter"]
+    assert [call[1:3] for call in written] == [("ic120", "HOME"), ("ic120", "HERE")]

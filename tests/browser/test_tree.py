@@ -1,6 +1,8 @@
 """The live tree at field size: it follows the running leaf, what has ended folds, and a node tells more."""
 
+import re
 from collections.abc import Iterator
+from datetime import timedelta
 from pathlib import Path
 
 import pytest
@@ -8,24 +10,13 @@ from playwright.sync_api import Page, expect
 
 from tms_ur.models import Event
 from unit.tms_ur.fakes import NOON
-from yard import RUN, Yard, serving
+from yard import RUN, Yard, serving, shape
 
 pytestmark = pytest.mark.browser
 BRANCHES, LEAVES = 27, 9  # 271 nodes, as the largest task of the field has
 
 
-def shape() -> dict[str, list[str]]:
-    leaves = [(f"0.{b}", [f"0.{b}.{leaf}" for leaf in range(LEAVES)]) for b in range(BRANCHES)]
-    paths = ["0", *(path for branch, below in leaves for path in (branch, *below))]
-    deep = [path.count(".") == 2 for path in paths]
-    types = ["LeafNodeZx200" if leaf else "Sequence" for leaf in deep]
-    goals = [f'model_name="zx200" subtask_name="dig" record_name="R{path}"' for path in paths]
-    ports = [goal if leaf else "" for goal, leaf in zip(goals, deep, strict=True)]
-    kinds = ["action" if leaf else "control" for leaf in deep]
-    return {"paths": paths, "names": types, "types": types, "kinds": kinds, "ports": ports}
-
-
-SHAPE = shape()
+SHAPE = shape(BRANCHES, LEAVES)
 
 
 @pytest.fixture
@@ -75,9 +66,34 @@ def test_a_node_that_is_clicked_on_opens_and_tells_more(page: Page, address: str
     expect(details).to_contain_text("R0.3.2")
     expect(details).to_contain_text("Running")
     expect(details).to_contain_text("Tries (0)")
+    expect(details.get_by_text("Blackboard (2)")).to_be_visible()
+    expect(page.locator("#node_blackboard dl")).to_be_hidden()  # it names no key itself
+    details.get_by_text("Blackboard (2)").click()
+    expect(page.locator("#node_blackboard dl")).to_contain_text('target"R7"')
     page.get_by_role("button", name="Fit").click()
     branch = page.locator("[data-path='0.4']")
     expect(branch).to_contain_text(f"(+{LEAVES})")
     branch.click()
     expect(branch).not_to_contain_text("(+")
     expect(page.locator("[data-path='0.4.0']")).to_have_count(1)
+
+
+def test_a_node_is_searched_for_and_durations_are_shown(page: Page, address: str, yard: Yard) -> None:
+    work(yard, "0.3.2")
+    began = Event(number=2, stamp=NOON, kind="node", node="0.3.2", text="dig IDLE -> RUNNING")
+    ended = Event(number=3, stamp=NOON + timedelta(seconds=7), kind="node", node="0.3.2", text="dig RUNNING -> SUCCESS")
+    yard.journals["r-1"] += [began, ended]
+    page.goto(f"{address}/#tree")
+    leaf = page.locator("[data-path='0.3.2']")
+    expect(leaf).to_be_in_viewport(ratio=1)
+    page.get_by_role("button", name="Durations").click()
+    expect(leaf.locator(".node_mark")).to_have_text("7.0 s")
+    search = page.get_by_role("searchbox", name="Search")
+    search.fill("r0.20.7")
+    expect(page.get_by_text("0 of 1")).to_be_visible()
+    search.press("Enter")
+    sought = page.locator("[data-path='0.20.7']")  # in a branch that is folded
+    expect(sought).to_be_in_viewport(ratio=1)
+    expect(sought).to_have_class(re.compile("found"))
+    expect(page.locator("#node_details")).to_contain_text("R0.20.7")
+    expect(page.get_by_text("1 of 1")).to_be_visible()

@@ -28,6 +28,19 @@ MACHINES = ("zx200", "ic120")
 RUN = ActiveRun(run_id="r-1", task_id=4, state="running", machines=["zx200"])
 
 
+def shape(branches: int, leaves: int) -> dict[str, list[str]]:
+    """The values of a journal's tree: a root with branches of equally many leaves."""
+    paths = ["0"]
+    for branch in range(branches):
+        paths += [f"0.{branch}", *(f"0.{branch}.{leaf}" for leaf in range(leaves))]
+    deep = [path.count(".") == 2 for path in paths]
+    types = ["LeafNodeZx200" if leaf else "Sequence" for leaf in deep]
+    goals = [f'model_name="zx200" subtask_name="dig" record_name="R{path}"' for path in paths]
+    ports = [goal if leaf else "" for goal, leaf in zip(goals, deep, strict=True)]
+    kinds = ["action" if leaf else "control" for leaf in deep]
+    return {"paths": paths, "names": types, "types": types, "kinds": kinds, "ports": ports}
+
+
 class Yard(FakeSiteClient):
     """Two machines, and a clock that the test turns."""
 
@@ -63,7 +76,9 @@ class Yard(FakeSiteClient):
         return [Run(run_id=name, state="abandoned", **facts, values={"nodes": 3}) for name in self.journals]
 
     def events(self, run_id: str, after: int, limit: int) -> list[Event]:
-        return self.journals[run_id][after : after + limit] if self.journals else super().events(run_id, after, limit)
+        if not self.journals:
+            return super().events(run_id, after, limit)
+        return self.journals.get(run_id, [])[after : after + limit]
 
     def parameters(self, model_name: str) -> list[Record]:
         written = utc_now() - timedelta(seconds=30)

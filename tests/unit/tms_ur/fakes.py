@@ -216,6 +216,10 @@ class FakeSiteClient:
         self._called("resume_plan", run_id)
         return ResumePlan(task_id=4, done=["dig"], next=["swing"])
 
+    def blackboard(self, run_id: str, node: str) -> dict[str, Any]:
+        self._called("blackboard", run_id, node)
+        return {"target": "R7", "count": 3}
+
     def abandon_run(self, run_id: str) -> None:
         self._called("abandon_run", run_id)
 

@@ -504,6 +504,13 @@ def test_resume_or_abandon_an_interrupted_run(client: Client, site_client: FakeS
     assert site_client.calls == [("resume_plan", "r-1"), ("start_run", 0, True, "r-1"), ("abandon_run", "r-1")]
 
 
+def test_what_a_node_sees_of_the_blackboard(client: Client, site_client: FakeSiteClient) -> None:
+    found = client.get("/api/runs/r-1/blackboard?node=0.1")
+    assert found.json() == {"values": {"target": "R7", "count": 3}}
+    assert site_client.calls == [("blackboard", "r-1", "0.1")]
+    assert client.get("/api/runs/r-1/blackboard?node=x").status_code == 422
+
+
 def test_which_machines_a_task_moves(site_client: FakeSiteClient, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(fakes, "XML", "<root><A model_name='zx200'/></root>")
     assert Client(app(site_client)).get("/api/tasks/4/machines").json() == {"machines": ["zx200"]}
@@ -699,7 +706,7 @@ def test_every_endpoint_is_in_the_document(client: Client) -> None:
     assert set(document["paths"]) == {
         "/api/state", "/api/events", "/api/tasks", "/api/tasks/{task_id}", "/api/runs", "/api/runs/{run_id}/events",
         "/api/runs/{run_id}/cancel", "/api/runs/{run_id}/resume", "/api/runs/{run_id}/abandon", "/api/parameters",
-        "/api/tasks/{task_id}/machines",
+        "/api/tasks/{task_id}/machines", "/api/runs/{run_id}/blackboard",
         "/api/parameters/history", "/api/sensing", "/api/site", "/api/session", "/api/login", "/api/logout",
         "/api/stop", "/api/machines/{name}/rearm", "/api/machines/{name}/escape",
         "/api/questions/{question_id}", "/api/tasks/check",

@@ -89,6 +89,23 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/runs/{run_id}/blackboard": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** What a node sees of the blackboard now */
+        get: operations["blackboard_api_runs__run_id__blackboard_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/runs": {
         parameters: {
             query?: never;
@@ -896,6 +913,19 @@ export interface components {
              * @description of the set, as the check told it: it is enabled as it was shown
              */
             id: string;
+        };
+        /**
+         * BlackboardNow
+         * @description What a node of an active run sees of what other nodes have written.
+         */
+        BlackboardNow: {
+            /**
+             * Values
+             * @description by key
+             */
+            values: {
+                [key: string]: unknown;
+            };
         };
         /**
          * BladeShape
@@ -2638,6 +2668,67 @@ export interface operations {
             };
             /** @description refused; the message says why */
             409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description a value is wrong */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description a module of the site is away or does not answer */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+        };
+    };
+    blackboard_api_runs__run_id__blackboard_get: {
+        parameters: {
+            query: {
+                node: string;
+            };
+            header?: never;
+            path: {
+                /** @description id of a run */
+                run_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["BlackboardNow"];
+                };
+            };
+            /** @description the request cannot be read */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description log in first */
+            401: {
                 headers: {
                     [name: string]: unknown;
                 };

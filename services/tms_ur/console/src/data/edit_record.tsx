@@ -2,8 +2,8 @@
 import { useState } from "react";
 import { useTranslation } from "react-i18next";
 import type { Stored } from "../models";
+import { RecordForm } from "../record_form";
 import { post } from "../server";
-import { RecordForm } from "./form";
 import { exact, nameOf, type Type, typed } from "./values";
 
 interface Props {
@@ -26,7 +26,7 @@ export function EditRecord({ record, ...rest }: Props) {
     return nameOf(record);
   };
   return (
-    <RecordForm title={t("edit_record", { name: nameOf(record) })} save={save} {...rest}>
+    <RecordForm id="editor" jump title={t("edit_record", { name: nameOf(record) })} save={save} {...rest}>
       {fields.map((field) => (
         <label key={field}>
           {[field, record.units[field] && `[${record.units[field]}]`, `(${t(`type_${record.types[field]}`)})`]

@@ -2,9 +2,9 @@
 import { useState } from "react";
 import { useTranslation } from "react-i18next";
 import type { Stored } from "../models";
+import { RecordForm } from "../record_form";
 import { post } from "../server";
 import { texts } from "../texts";
-import { RecordForm } from "./form";
 import { nameOf, TYPES, type Type, typed } from "./values";
 
 interface Field {
@@ -15,15 +15,16 @@ interface Field {
 
 interface Props {
   records: Stored[];
-  onSaved: () => void;
+  machine?: string; // whose it will be; a person may tell another
+  onSaved: (name: string) => void;
   onClose: () => void;
 }
 
 const EMPTY: Field = { name: "", type: "double", text: "" };
 
-export function NewRecord({ records, ...rest }: Props) {
+export function NewRecord({ records, machine = "", ...rest }: Props) {
   const { t } = useTranslation();
-  const [model, setModel] = useState("");
+  const [model, setModel] = useState(machine);
   const [name, setName] = useState("");
   const [fields, setFields] = useState([EMPTY]);
   const save = async () => {
@@ -38,7 +39,7 @@ export function NewRecord({ records, ...rest }: Props) {
   };
   const change = (index: number, field: Field) => setFields(fields.with(index, field));
   return (
-    <RecordForm title={t("new_record")} save={save} {...rest}>
+    <RecordForm id="editor" jump title={t("new_record")} save={save} {...rest}>
       <label>
         {t("model")}
         <input id="new_model" maxLength={64} value={model} onChange={(event) => setModel(event.target.value)} />

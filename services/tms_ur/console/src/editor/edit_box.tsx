@@ -1,5 +1,5 @@
 // A node on the picture of the editor: what the check found at it, and how it differs from another version.
-import { Handle, type NodeProps, type Node as Placed, Position } from "@xyflow/react";
+import type { NodeProps, Node as Placed } from "@xyflow/react";
 import { memo } from "react";
 import type { Change } from "./difference";
 import type { EditNode } from "./groot";
@@ -33,7 +33,6 @@ export const EditBox = memo(function EditBox({ data, selected }: NodeProps<EditB
       draggable
       onDragStart={(event) => event.dataTransfer.setData(NODES, node.path)}
     >
-      <Handle type="target" position={Position.Top} isConnectable={false} />
       <strong>
         {node.type}
         {hidden > 0 && ` (+${hidden})`}
@@ -44,7 +43,6 @@ export const EditBox = memo(function EditBox({ data, selected }: NodeProps<EditB
         {warnings > 0 && ` ▲${warnings}`}
       </span>
       <span className="node_label">{node.machine ? `${node.machine}: ${node.label}` : node.label}</span>
-      <Handle type="source" position={Position.Bottom} isConnectable={false} />
     </div>
   );
 });

@@ -32,7 +32,14 @@ function wrongIn(check: Check): Map<string, number> {
   return new Map([...wrong].filter(([, count]) => count > 0));
 }
 
-export function Editor({ rest, site, target }: { rest: string; site: Site; target: Target }) {
+interface Props {
+  rest: string; // of the address
+  site: Site;
+  target: Target;
+  onRecord: () => void; // a record was made
+}
+
+export function Editor({ rest, site, target, onRecord }: Props) {
   const { t } = useTranslation();
   const [drafts, setDrafts] = useDrafts(rest, target, site);
   const [where, setWhere] = useState<Where>("inside");
@@ -108,13 +115,14 @@ export function Editor({ rest, site, target }: { rest: string; site: Site; targe
               marks={check.marks.get(keyOf({ tree: tree.id, path: chosen }))}
               onSet={set}
               onTree={(id) => take({ tree: id, chosen: "0" })}
+              onRecord={onRecord}
             />
           )}
-          <section id="ed_findings" aria-label={t("check")} aria-live="polite">
+          <section id="ed_findings" aria-label={t("check")} aria-live="polite" aria-busy={!check.fresh}>
             <Problem error={check.error} />
             {check.found && <Findings found={check.found} onLine={toLine} />}
           </section>
-          <SaveForm target={target} text={text} found={check.found} changed={isChanged(drafts)} onSaved={saved} />
+          <SaveForm target={target} text={text} changed={isChanged(drafts)} onSaved={saved} />
         </div>
       </div>
     </>

@@ -3,7 +3,7 @@ import { useEffect, useState } from "react";
 import { useTranslation } from "react-i18next";
 import { Problem } from "../problem";
 import { Editor } from "./editor";
-import { readSite, readTarget, type Site, type Target } from "./site";
+import { readRecords, readSite, readTarget, type Site, type Target } from "./site";
 import { parse, XmlError } from "./xml";
 
 interface Loaded {
@@ -40,6 +40,14 @@ export default function EditorPage({ rest }: { rest: string }) {
       left = true;
     };
   }, [rest]);
+  const withRecords = async () => {
+    try {
+      const records = await readRecords();
+      setLoaded((now) => now && { ...now, site: { ...now.site, records } });
+    } catch (why) {
+      setError(why as Error);
+    }
+  };
   const shown = loaded?.rest === rest ? loaded : null;
   const line = shown && broken(shown.target.text);
   const kind = shown?.target.kind ?? "new";
@@ -51,7 +59,7 @@ export default function EditorPage({ rest }: { rest: string }) {
       </p>
       <Problem error={error} />
       {line !== null && <p className="bad">{t("ed_broken", { line })}</p>}
-      {shown && line === null && <Editor key={rest} {...shown} />}
+      {shown && line === null && <Editor key={rest} {...shown} onRecord={withRecords} />}
     </>
   );
 }

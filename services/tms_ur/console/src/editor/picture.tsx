@@ -5,8 +5,8 @@ import "./editor.css";
 import { ReactFlow, ReactFlowProvider, useReactFlow, useStore } from "@xyflow/react";
 import { useEffect } from "react";
 import { useTranslation } from "react-i18next";
-import { linesTo } from "../tree/boxes";
 import { HEIGHT, type Placed, WIDTH } from "../tree/layout";
+import { Lines } from "../tree/lines";
 import { EditBox, type EditBoxNode } from "./edit_box";
 
 const KINDS = { edit: EditBox };
@@ -41,7 +41,6 @@ function Flow({ boxes, places, chosen, label, onChoose }: Props) {
         <ReactFlow
           aria-label={label}
           nodes={boxes}
-          edges={linesTo(places)}
           nodeTypes={KINDS}
           nodesDraggable={false}
           nodesConnectable={false}
@@ -56,7 +55,9 @@ function Flow({ boxes, places, chosen, label, onChoose }: Props) {
           onlyRenderVisibleElements
           proOptions={{ hideAttribution: true }} // a link out of the site
           onNodeClick={(_, node) => onChoose(node.id)}
-        />
+        >
+          <Lines places={places} />
+        </ReactFlow>
       </div>
       <div className="bar">
         <button type="button" onClick={() => flow.zoomIn()}>

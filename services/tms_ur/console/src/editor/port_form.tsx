@@ -5,6 +5,7 @@ import type { Stored } from "../models";
 import { Said } from "../said";
 import { type EditNode, portsOf } from "./groot";
 import { CALL, type Port } from "./palette";
+import { RecordMaker } from "./record_maker";
 import type { Site } from "./site";
 import type { Marks } from "./use_check";
 import { valueIn } from "./xml";
@@ -15,6 +16,7 @@ interface Props {
   marks: Marks | undefined;
   onSet: (name: string, value: string) => void;
   onTree: (id: string) => void;
+  onRecord: () => void; // a record was made
 }
 
 const RECORDS = ["record_name", "target_record_name", "previous_target_record_name"];
@@ -47,7 +49,7 @@ export function optionsFor(port: Port, node: EditNode, site: Site): string[] {
   return [...new Set(known[port.name]?.() ?? [])];
 }
 
-export function PortForm({ node, site, marks, onSet, onTree }: Props) {
+export function PortForm({ node, site, marks, onSet, onTree, onRecord }: Props) {
   const { t } = useTranslation();
   const type = site.types.get(node.type);
   const ports = type?.ports ?? [];
@@ -70,13 +72,24 @@ export function PortForm({ node, site, marks, onSet, onTree }: Props) {
         </button>
       )}
       {[...(node.kind === "subtree" ? [] : [name]), ...ports, ...more].map((port) => (
-        <Field
-          key={port.name}
-          port={port}
-          given={value(port.name)}
-          options={optionsFor(port, node, site)}
-          onSet={(text) => onSet(port.name, text)}
-        />
+        <div key={port.name}>
+          <Field
+            port={port}
+            given={value(port.name)}
+            options={optionsFor(port, node, site)}
+            onSet={(text) => onSet(port.name, text)}
+          />
+          {RECORDS.includes(port.name) && (
+            <RecordMaker
+              machine={node.machine}
+              records={site.records}
+              onMade={(record) => {
+                onRecord();
+                onSet(port.name, record);
+              }}
+            />
+          )}
+        </div>
       ))}
       {RECORDS.map((port) => (
         <Fields key={port} record={recordsOf(site, node.machine).find((one) => one.record_name === value(port))} />

@@ -3,7 +3,6 @@ import { useState } from "react";
 import { useTranslation } from "react-i18next";
 import { Command } from "../command";
 import { confirmed } from "../confirm";
-import type { Checked } from "../models";
 import { post } from "../server";
 import { described, nameIn } from "../tasks/versions";
 import { texts } from "../texts";
@@ -12,10 +11,16 @@ import type { Target } from "./site";
 interface Props {
   target: Target;
   text: string;
-  found: Checked | null; // null: the check has not answered
   changed: boolean;
   onSaved: (rest: string) => void; // where it is then
 }
+
+/** How many errors this very text has: what is on the screen may be of the one before. 0 where nobody can tell. */
+const errorsIn = (text: string) =>
+  post("/api/tasks/check", { xml: text }).then(
+    (found) => found.errors.length,
+    () => 0,
+  );
 
 async function saveTask(text: string, description: string, onSaved: (rest: string) => void): Promise<string> {
   const added = await post("/api/tasks", { xml: text, description });
@@ -29,14 +34,14 @@ async function saveTemplate(text: string, { name }: Target, description: string,
   return texts.t("stored_template", { name });
 }
 
-export function SaveForm({ target, text, found, changed, onSaved }: Props) {
+export function SaveForm({ target, text, changed, onSaved }: Props) {
   const { t } = useTranslation();
   const [name, setName] = useState(nameIn(target.description));
   const [comment, setComment] = useState("");
   const isTemplate = target.kind === "template";
   const allowed = document.body.dataset.role === "admin";
   const save = async () => {
-    const open = isTemplate ? 0 : (found?.errors.length ?? 0); // what a template leaves to its callers is no error
+    const open = isTemplate ? 0 : await errorsIn(text); // what a template leaves to its callers is no error
     const ask = isTemplate ? t("replace_ask", { name: target.name }) : open > 0 ? t("store_ask") : "";
     if (ask !== "" && !(await confirmed(ask))) {
       return "";

@@ -20,11 +20,13 @@ export interface Target {
   stored: string; // the text as the database has it, empty: it has none
 }
 
+export const readRecords = () => get("/api/parameters");
+
 export async function readSite(): Promise<Site> {
   const [palette, templates, records, tasks] = await Promise.all([
     get("/api/palette"),
     get("/api/templates"),
-    get("/api/parameters"),
+    readRecords(),
     get("/api/tasks"),
   ]);
   return {

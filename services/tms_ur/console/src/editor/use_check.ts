@@ -1,12 +1,10 @@
-// The check of what is drawn, a moment after each change; the findings stay at their nodes until the next ones come.
-import { useEffect, useMemo, useState } from "react";
+// The check of what is drawn, after each change; the findings stay at their nodes until the next ones come.
+import { useEffect, useMemo, useRef, useState } from "react";
 import type { Checked, Finding } from "../models";
 import { post } from "../server";
 import { type At, linesOf, treesOf } from "./groot";
 import type { Types } from "./palette";
 import { XmlError } from "./xml";
-
-const PAUSE = 200; // ms without a change
 
 export interface Marks {
   errors: Finding[];
@@ -16,8 +14,16 @@ export interface Marks {
 export interface Check {
   found: Checked | null;
   error: Error | null; // why it could not be checked
+  fresh: boolean; // it is of the text as it is now
   lines: Map<number, At>; // of the checked text
   marks: Map<string, Marks>; // by keyOf
+}
+
+/** What the server said of a text. */
+interface Answer {
+  found: Checked | null;
+  error: Error | null;
+  text: string;
 }
 
 export const keyOf = ({ tree, path }: At) => `${tree}\n${path}`;
@@ -49,24 +55,50 @@ function linesIn(text: string, types: Types): Map<number, At> {
   }
 }
 
+interface Checking {
+  newest: string; // text
+  busy: boolean; // the server has been asked
+  left: boolean; // nobody waits any more
+}
+
+/** Asks for one check after another until the newest text is checked: those in between are left out. */
+async function follow(now: Checking, tell: (checked: Answer) => void) {
+  now.busy = true;
+  let text: string | null = null;
+  while (text !== now.newest && !now.left) {
+    text = now.newest;
+    const asked = { found: null, error: null, text };
+    const answer = await post("/api/tasks/check", { xml: text }).then(
+      (found): Answer => ({ ...asked, found }),
+      (error: Error): Answer => ({ ...asked, error }),
+    );
+    if (!now.left) {
+      tell(answer);
+    }
+  }
+  now.busy = false;
+}
+
 export function useCheck(text: string, types: Types): Check {
-  const [checked, setChecked] = useState<{ found: Checked | null; error: Error | null; text: string } | null>(null);
+  const [checked, setChecked] = useState<Answer | null>(null);
+  const checking = useRef<Checking>({ newest: text, busy: false, left: false });
   useEffect(() => {
-    let left = false;
-    const timer = setTimeout(() => {
-      post("/api/tasks/check", { xml: text }).then(
-        (found) => left || setChecked({ found, error: null, text }),
-        (error: Error) => left || setChecked({ found: null, error, text }),
-      );
-    }, PAUSE);
+    const now = checking.current;
+    now.left = false;
     return () => {
-      left = true;
-      clearTimeout(timer);
+      now.left = true;
     };
+  }, []);
+  useEffect(() => {
+    checking.current.newest = text;
+    if (!checking.current.busy) {
+      follow(checking.current, setChecked);
+    }
   }, [text]);
-  return useMemo(() => {
+  const shown = useMemo(() => {
     const lines = checked === null ? new Map<number, At>() : linesIn(checked.text, types);
     const found = checked?.found ?? null;
     return { found, error: checked?.error ?? null, lines, marks: found === null ? new Map() : marksOf(found, lines) };
   }, [checked, types]);
+  return { ...shown, fresh: checked?.text === text };
 }

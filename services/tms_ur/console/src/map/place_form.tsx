@@ -2,9 +2,8 @@
 
 import { useState } from "react";
 import { useTranslation } from "react-i18next";
-import { Command } from "../command";
 import type { Stored } from "../models";
-import { Problem } from "../problem";
+import { RecordForm } from "../record_form";
 import { post } from "../server";
 import { texts } from "../texts";
 import { type Area, flawOf } from "./areas";
@@ -16,19 +15,18 @@ interface Props {
   machines: string[];
   records: readonly Stored[];
   areas: readonly Area[];
-  onSaved: () => void;
+  onSaved: (name: string) => void;
   onClose: () => void;
 }
 
 const NEW = "";
 
-export function PlaceForm({ place, machines, records, areas, onSaved, onClose }: Props) {
+export function PlaceForm({ place, machines, records, areas, ...rest }: Props) {
   const { t } = useTranslation();
   const [machine, setMachine] = useState(machines[0] ?? "");
   const [record, setRecord] = useState(NEW);
   const [name, setName] = useState("");
   const [pose, setPose] = useState<Pose>({ x: round(place[0]), y: round(place[1]), heading: 0 });
-  const [error, setError] = useState<Error | null>(null);
   const own = records.filter((one) => one.model_name === machine && one.type === "static" && poseOf(one) !== null);
   const chosen = own.find((one) => one.record_name === record) ?? null;
   const choose = (wanted: string) => {
@@ -39,25 +37,23 @@ export function PlaceForm({ place, machines, records, areas, onSaved, onClose }:
   const known = Object.values(pose).every(Number.isFinite);
   const flaw = known ? flawOf([pose.x, pose.y], areas) : (["place_number", {}] as const);
   const save = async () => {
-    setError(null);
     const title = chosen ? record : name.trim();
-    try {
-      if (!chosen && records.some((one) => one.model_name === machine && one.record_name === title)) {
-        throw new Error(texts.t("record_there", { name: `${machine}/${title}` }));
-      }
-      const fields = fieldsOf(pose, chosen);
-      const to = { model_name: machine, record_name: title };
-      await post("/api/parameters", { ...to, fields, create: !chosen, type: chosen ? "" : "static" });
-      onSaved();
-      return texts.t("saved", { name: `${machine}/${title}` });
-    } catch (why) {
-      setError(why as Error);
-      return "";
+    const full = `${machine}/${title}`;
+    if (!chosen && records.some((one) => one.model_name === machine && one.record_name === title)) {
+      throw new Error(texts.t("record_there", { name: full }));
     }
+    const to = { model_name: machine, record_name: title };
+    await post("/api/parameters", {
+      ...to,
+      fields: fieldsOf(pose, chosen),
+      create: !chosen,
+      type: chosen ? "" : "static",
+    });
+    return full;
   };
+  const ready = !flaw && (chosen || name.trim() !== "");
   return (
-    <section id="place_form" className="card" aria-label={t("place_form")}>
-      <h3>{t("place_form")}</h3>
+    <RecordForm id="place_form" title={t("place_form")} save={ready ? save : null} {...rest}>
       <div className="bar">
         <label>
           {t("model")}
@@ -89,18 +85,7 @@ export function PlaceForm({ place, machines, records, areas, onSaved, onClose }:
           {t(flaw[0], flaw[1])}
         </p>
       )}
-      <Problem id="place_problem" error={error} />
-      <div className="bar">
-        {!flaw && (chosen || name.trim() !== "") && (
-          <Command className="go" work={save}>
-            {t("save")}
-          </Command>
-        )}
-        <button type="button" onClick={onClose}>
-          {t("close")}
-        </button>
-      </div>
-    </section>
+    </RecordForm>
   );
 }
 

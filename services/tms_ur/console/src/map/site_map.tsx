@@ -28,9 +28,10 @@ interface Props {
   state: State;
   bodies: ReadonlyMap<string, SiteMachine>;
   inSpace: boolean;
+  picking?: { machine: string; onSaved: (name: string) => void }; // a place for a record of this machine is wanted
 }
 
-export function SiteMap({ state, bodies, inSpace }: Props) {
+export function SiteMap({ state, bodies, inSpace, picking }: Props) {
   const { t } = useTranslation();
   const { list: enabled, error, again: readAgain } = useList(readAreas);
   const [draft, setDraft] = useState<Draft | null>(null);
@@ -63,9 +64,11 @@ export function SiteMap({ state, bodies, inSpace }: Props) {
   return (
     <>
       <section className="bar" aria-label={t("map_view")}>
-        <a className="button" href={inSpace ? "#map" : "#map/3d"}>
-          {t(inSpace ? "map_2d" : "map_3d")}
-        </a>
+        {!picking && (
+          <a className="button" href={inSpace ? "#map" : "#map/3d"}>
+            {t(inSpace ? "map_2d" : "map_3d")}
+          </a>
+        )}
         {!inSpace && <Zooms zoom={zoom} fit={fit} />}
         <label>
           {t("follow")}{" "}
@@ -77,7 +80,7 @@ export function SiteMap({ state, bodies, inSpace }: Props) {
           </select>
         </label>
         <Choice id="all_records" text={t("all_records")} chosen={all} choose={setAll} />
-        {!inSpace && draft === null && (
+        {!inSpace && !picking && draft === null && (
           <button type="button" onClick={draw}>
             {t("change_areas")}
           </button>
@@ -110,12 +113,13 @@ export function SiteMap({ state, bodies, inSpace }: Props) {
         <PlaceForm
           key={chosen.join()}
           place={chosen}
-          machines={[...bodies.keys()]}
+          machines={picking ? [picking.machine] : [...bodies.keys()]}
           records={records ?? []}
           areas={areas}
-          onSaved={() => {
+          onSaved={(name) => {
             setChosen(null);
             again();
+            picking?.onSaved(name);
           }}
           onClose={() => setChosen(null)}
         />

@@ -1,20 +1,21 @@
 // The drawing of a tree: it follows the running leaf, finished branches fold, and what is clicked on opens and tells more.
 import "@xyflow/react/dist/base.css";
 import "./tree.css";
-import { MiniMap, ReactFlow, ReactFlowProvider, useReactFlow } from "@xyflow/react";
-import { type ReactNode, useEffect, useMemo, useState } from "react";
+import { MiniMap, ReactFlow, ReactFlowProvider, useStore } from "@xyflow/react";
+import { memo, type ReactNode, useCallback, useMemo, useRef, useState } from "react";
 import { useTranslation } from "react-i18next";
 import type { Tree } from "../models";
-import { BOX, linesTo } from "./boxes";
+import { Bar, type Timing } from "./bar";
 import { Details } from "./details";
-import { type Placed, placed, WIDTH } from "./layout";
-import { type BoxNode, NodeBox, WORDS } from "./node_box";
-import { type NodeState, nodesOf, openPaths, stateOf, type TreeNode } from "./shape";
+import { type Placed, placed } from "./layout";
+import { Lines } from "./lines";
+import { type BoxNode, NodeBox } from "./node_box";
+import { above, type NodeState, nodesOf, openPaths, stateOf, type TreeNode } from "./shape";
+import { bandOf, useBoxes } from "./use_boxes";
 
 const KINDS = { box: NodeBox };
 const FIT = { maxZoom: 1, minZoom: 0.4, padding: 0.1 };
-const LEGIBLE = 0.8; // zoom at which labels can be read from an arm's length
-const MOVE = { duration: 300 }; // ms
+const FAR = 0.35; // zoom below which nobody can read letters
 
 interface Props {
   tree: Tree;
@@ -22,6 +23,7 @@ interface Props {
   leaf: string; // path of the one that works or waits
   last: Map<number, NodeState>; // of each node by its index: the last state that was not idle
   facts: (node: TreeNode) => ReactNode; // what else is known of the node that is chosen
+  timing?: Timing; // how long nodes took, on demand
 }
 
 export function TreeFlow(props: Props) {
@@ -32,61 +34,58 @@ export function TreeFlow(props: Props) {
   );
 }
 
-function Flow({ tree, digits, leaf, last, facts }: Props) {
-  const { t } = useTranslation();
-  const [byHand, setByHand] = useState(new Map<string, boolean>());
-  const [chosen, setChosen] = useState("");
-  const nodes = useMemo(() => nodesOf(tree), [tree]);
-  const open = openPaths(nodes, digits, byHand);
+/** What of a tree is shown: it changes with what is open, not with every state. */
+function useShown(nodes: Map<string, TreeNode>, digits: string, byHand: Map<string, boolean>) {
+  const open = useMemo(() => openPaths(nodes, digits, byHand), [nodes, digits, byHand]);
   const shape = [...open].join();
   // biome-ignore lint/correctness/useExhaustiveDependencies: `shape` is what `open` holds
-  const places = useMemo(() => {
+  return useMemo(() => {
     const root = nodes.get("0");
-    return root === undefined ? [] : placed(root, open);
+    return { open, places: root === undefined ? [] : placed(root, open) };
   }, [nodes, shape]);
-  const boxes: BoxNode[] = places.map(({ node, x, y }) => {
-    const state = stateOf(node, digits);
-    const hidden = open.has(node.path) ? 0 : node.children.length;
-    return {
-      id: node.path,
-      type: "box",
-      position: { x, y },
-      ...BOX,
-      selected: node.path === chosen,
-      ariaLabel: `${node.type} ${node.name}: ${t(WORDS[state])}`,
-      data: { node, state, was: last.get(node.index) ?? "idle", current: node.path === leaf, hidden },
-    };
-  });
-  const edges = linesTo(places);
-  const choose = (path: string) => {
-    setChosen(path);
-    setByHand((before) => (nodes.get(path)?.children.length ? new Map(before).set(path, !open.has(path)) : before));
-  };
+}
+
+function Flow({ tree, digits, leaf, last, facts, timing }: Props) {
+  const [byHand, setByHand] = useState(new Map<string, boolean>());
+  const [chosen, setChosen] = useState("");
+  const [found, setFound] = useState(new Set<string>());
+  const nodes = useMemo(() => nodesOf(tree), [tree]);
+  const { open, places } = useShown(nodes, digits, byHand);
+  const machines = nodes.get("0")?.team ?? [];
+  const spent = timing?.spent ?? null;
+  const boxes = useBoxes(places, { digits, leaf, last, chosen, open, found, machines, spent });
+  const set = useCallback(
+    (paths: Iterable<string>, shown: boolean) =>
+      setByHand((before) => new Map([...before, ...[...paths].map((path) => [path, shown] as const)])),
+    [],
+  );
+  const choose = useCallback(
+    (path: string) => {
+      setChosen(path);
+      if (nodes.get(path)?.children.length) {
+        set([path], !open.has(path));
+      }
+    },
+    [nodes, open, set],
+  );
   const looked = nodes.get(chosen);
-  const all = () => setByHand(new Map([...nodes.keys()].map((path) => [path, true])));
   return (
     <div className="tree_and_details">
       <div>
-        <Bar at={places.find(({ node }) => node.path === leaf)} onAll={all} />
-        <div id="tree_box" className="treebox flow">
-          <ReactFlow
-            aria-label={t("tree_label")}
-            nodes={boxes}
-            edges={edges}
-            nodeTypes={KINDS}
-            nodesDraggable={false}
-            nodesConnectable={false}
-            minZoom={0.05}
-            maxZoom={2}
-            fitView={leaf === ""}
-            fitViewOptions={FIT}
-            onlyRenderVisibleElements
-            proOptions={{ hideAttribution: true }} // a link out of the site
-            onNodeClick={(_, node) => choose(node.id)}
-          >
-            <MiniMap pannable zoomable ariaLabel={t("overview")} nodeClassName={(node) => String(node.data.state)} />
-          </ReactFlow>
-        </div>
+        <Bar
+          nodes={nodes}
+          places={places}
+          leaf={leaf}
+          timing={timing}
+          onAll={() => set(nodes.keys(), true)}
+          onFound={(some) => setFound(new Set(some.map((one) => one.path)))}
+          onGo={({ path }) => {
+            set(above(path), true);
+            setChosen(path);
+          }}
+        />
+        {machines.length > 1 && <Legend machines={machines} />}
+        <Picture boxes={boxes} places={places} whole={leaf === ""} machines={machines} onChoose={choose} />
       </div>
       <Details node={looked} state={stateOf(looked ?? { index: -1 }, digits)}>
         {looked && facts(looked)}
@@ -95,37 +94,61 @@ function Flow({ tree, digits, leaf, last, facts }: Props) {
   );
 }
 
-/** `at`: where the leaf stands that works or waits. */
-function Bar({ at, onAll }: { at: Placed<TreeNode> | undefined; onAll: () => void }) {
+/** Which colour is whose. */
+function Legend({ machines }: { machines: string[] }) {
   const { t } = useTranslation();
-  const flow = useReactFlow();
-  const [following, setFollowing] = useState(true);
-  useEffect(() => {
-    if (following && at !== undefined && flow.viewportInitialized) {
-      flow.setCenter(at.x + WIDTH / 2, at.y, { zoom: Math.max(LEGIBLE, flow.getZoom()), ...MOVE });
-    }
-  }, [following, at, flow]);
-  const look = (move: () => void) => () => {
-    setFollowing(false);
-    move();
-  };
   return (
-    <div className="bar">
-      <button type="button" aria-pressed={following} onClick={() => setFollowing(!following)}>
-        {following ? "☑" : "☐"} {t("follow")}
-      </button>
-      <button type="button" onClick={look(() => flow.zoomIn(MOVE))}>
-        {t("zoom_in")}
-      </button>
-      <button type="button" onClick={look(() => flow.zoomOut(MOVE))}>
-        {t("zoom_out")}
-      </button>
-      <button type="button" onClick={look(() => flow.fitView({ ...MOVE, padding: 0.05 }))}>
-        {t("fit")}
-      </button>
-      <button type="button" onClick={look(onAll)}>
-        {t("expand")}
-      </button>
-    </div>
+    <ul className="plain legend" aria-label={t("machines")}>
+      {machines.map((name) => (
+        <li key={name}>
+          <span className={`swatch machine-${bandOf([name], machines)}`} aria-hidden="true" /> {name}
+        </li>
+      ))}
+    </ul>
   );
 }
+
+interface PictureProps {
+  boxes: BoxNode[];
+  places: Placed<TreeNode>[];
+  whole: boolean; // shown as a whole at first
+  machines: string[];
+  onChoose: (path: string) => void;
+}
+
+const Picture = memo(function Picture({ boxes, places, whole, machines, onChoose }: PictureProps) {
+  const { t } = useTranslation();
+  const box = useRef<HTMLDivElement>(null);
+  const far = useStore(({ transform }) => transform[2] < FAR);
+  // while it moves, it is one layer that the browser shifts; afterwards it is drawn sharply
+  const moves = (begun: boolean) => () => void box.current?.classList.toggle("moves", begun);
+  const kindOf = useCallback(
+    (node: { team?: string[] }) => `line-${machines.length > 1 ? bandOf(node.team ?? [], machines) : 0}`,
+    [machines],
+  );
+  return (
+    <div id="tree_box" ref={box} className={`treebox flow${far ? " far" : ""}`}>
+      <ReactFlow
+        aria-label={t("tree_label")}
+        nodes={boxes}
+        nodeTypes={KINDS}
+        nodesDraggable={false}
+        nodesConnectable={false}
+        minZoom={0.05}
+        maxZoom={2}
+        fitView={whole}
+        fitViewOptions={FIT}
+        onlyRenderVisibleElements
+        proOptions={{ hideAttribution: true }} // a link out of the site
+        onMoveStart={moves(true)}
+        onMoveEnd={moves(false)}
+        onNodeClick={(_, node) => onChoose(node.id)}
+      >
+        <Lines places={places} kindOf={kindOf} />
+        <MiniMap pannable zoomable ariaLabel={t("overview")} nodeClassName={classOf} />
+      </ReactFlow>
+    </div>
+  );
+});
+
+const classOf = (node: { data: Record<string, unknown> }) => String(node.data.state);

@@ -1,4 +1,5 @@
-// What is known now of a node of a run that goes on: its tries, and the record of its goal with values and age.
+// What is known now of a node of a run that goes on: its tries, the record of its goal and the flag that it reads, with
+// values and age, and what it sees of the blackboard.
 import { siteNow } from "old/server.js";
 import { useEffect, useState } from "react";
 import { useTranslation } from "react-i18next";
@@ -9,6 +10,7 @@ import type { Stored } from "../models";
 import { Problem } from "../problem";
 import { get } from "../server";
 import { Attempts } from "./attempts";
+import { BlackboardNow } from "./blackboard_now";
 import { port, type TreeNode } from "./shape";
 
 const EVERY = 5000; // ms between looks at the record
@@ -16,35 +18,46 @@ const EVERY = 5000; // ms between looks at the record
 export function LiveFacts({ run, node }: { run: string; node: TreeNode }) {
   const { journal, error } = useJournal(run, true);
   const record = port(node.ports, "record_name");
+  const flag = port(node.ports, "mongo_record_name");
   return (
     <>
       <Problem error={error} />
-      {record && <RecordNow machine={node.machine} name={record} />}
+      {record && <RecordNow id="node_record" machine={node.machine} name={record} />}
+      {flag && <RecordNow id="node_flag" machine="" name={flag} field={port(node.ports, "mongo_param_name")} />}
+      <BlackboardNow run={run} node={node} />
       {journal && <Attempts journal={journal} count={journal.events.length} now={siteNow()} node={node} />}
     </>
   );
 }
 
-function RecordNow({ machine, name }: { machine: string; name: string }) {
+interface RecordProps {
+  id: string;
+  machine: string; // empty: a record that all machines share
+  name: string;
+  field?: string; // the only one that is shown
+}
+
+function RecordNow({ id, machine, name, field = "" }: RecordProps) {
   const { t } = useTranslation();
   const [record, setRecord] = useState<Stored | null>(null);
   useEffect(() => {
     const look = () =>
       get("/api/parameters", {}, `model_name=${encodeURIComponent(machine)}`).then(
-        (found) => setRecord(found.find((one) => one.record_name === name) ?? null),
+        (found) => setRecord(found.find((one) => one.record_name === name && one.model_name === machine) ?? null),
         () => setRecord(null), // the database is away: nothing is known of it
       );
     look();
     const timer = setInterval(look, EVERY);
     return () => clearInterval(timer);
   }, [machine, name]);
+  const only = record && Object.entries(record.values).filter(([one]) => field === "" || one === field);
   return (
     record && (
-      <div id="node_record">
+      <div id={id}>
         <h4>
           {t("record")} {nameOf(record)}
         </h4>
-        <p>{listed(record.values, record)}</p>
+        <p>{listed(Object.fromEntries(only ?? []), record)}</p>
         <p className="small">
           {t("age")}: <Age stamp={record.updated_at} /> ({record.source})
         </p>

@@ -1,8 +1,10 @@
-// A node of a tree: its state by a shape and Groot's colour.
-import { Handle, type NodeProps, type Node as Placed, Position } from "@xyflow/react";
+// A node of a tree: its state by a shape and Groot's colour, its machine by a band and its name.
+import type { NodeProps, Node as Placed } from "@xyflow/react";
+import { duration } from "old/dom.js";
 import { memo } from "react";
 import { useTranslation } from "react-i18next";
 import type { NodeState, TreeNode } from "./shape";
+import type { Spent } from "./spent";
 
 export interface Facts extends Record<string, unknown> {
   node: TreeNode;
@@ -10,6 +12,9 @@ export interface Facts extends Record<string, unknown> {
   was: NodeState; // the last state that was not idle
   current: boolean; // the leaf that works or waits
   hidden: number; // children that are folded away
+  found: boolean; // by a search
+  band: number; // of its machine, 0: of none, or of several
+  spent: Spent | undefined; // undefined: durations are not shown
 }
 
 export type BoxNode = Placed<Facts, "box">;
@@ -24,27 +29,35 @@ export const WORDS: Record<NodeState, string> = {
 
 export const NodeBox = memo(function NodeBox({ data }: NodeProps<BoxNode>) {
   const { t } = useTranslation();
-  const { node, state, was, current, hidden } = data;
-  const before = state === "idle" && was !== "idle" ? ` was-${was}` : "";
+  const { node, state, was, current, hidden, found, band, spent } = data;
   const from = node.template && ` (${t("from_template", { name: node.template })})`;
+  const classes = [
+    "node",
+    state,
+    state === "idle" && was !== "idle" && `was-${was}`,
+    current && "current",
+    found && "found",
+    spent && `spent spent-${spent.heat}`,
+    node.kind,
+  ];
+  const machine = node.machine || (band > 0 ? node.team[0] : "");
   return (
     <div
-      className={`node ${state}${before}${current ? " current" : ""} ${node.kind}`}
+      className={classes.filter(Boolean).join(" ")}
       data-path={node.path}
       data-state={state}
       title={`${node.type} ${node.name} ${node.ports}${from}`}
     >
-      <Handle type="target" position={Position.Top} isConnectable={false} />
       {node.template && <span className="from_template" />}
+      {band > 0 && <span className={`band machine-${band}`} />}
       <strong>
         {node.type}
         {hidden > 0 && ` (+${hidden})`}
       </strong>
       <span className="node_mark" aria-hidden="true">
-        {MARKS[state]}
+        {spent ? duration(spent.seconds) : MARKS[state]}
       </span>
-      <span className="node_label">{node.machine ? `${node.machine}: ${node.label}` : node.label}</span>
-      <Handle type="source" position={Position.Bottom} isConnectable={false} />
+      <span className="node_label">{machine ? `${machine}: ${node.label}` : node.label}</span>
     </div>
   );
 });

@@ -12,6 +12,7 @@ export interface TreeNode {
   kind: string;
   ports: string;
   machine: string; // empty where it names none
+  team: string[]; // machines that it and the nodes below it name, in the order of the tree
   label: string; // the goal of a leaf, else a name of its own, else its ports
   template: string; // TEMPLATE:LINE that it comes from, empty for a node of the task itself
   children: TreeNode[];
@@ -36,14 +37,43 @@ export function nodesOf(tree: Tree): Map<string, TreeNode> {
       kind,
       ports,
       machine: port(ports, "model_name"),
+      team: [],
       label: name === type ? goal || ports : name,
       template: tree.templates[index] ?? "",
       children: [],
     };
     nodes.set(path, node);
     nodes.get(path.slice(0, path.lastIndexOf(".")))?.children.push(node);
+    join(nodes, node);
   });
   return nodes;
+}
+
+/** Its machine works in every branch that it is in. */
+function join(nodes: Map<string, TreeNode>, { path, machine }: TreeNode) {
+  for (let at = path; machine !== ""; at = at.slice(0, at.lastIndexOf("."))) {
+    const above = nodes.get(at);
+    if (above === undefined || above.team.includes(machine)) {
+      return;
+    }
+    above.team.push(machine);
+  }
+}
+
+/** Paths of all nodes that a node is in. */
+export function above(path: string): string[] {
+  const parts = path.split(".");
+  return parts.slice(1).map((_, index) => parts.slice(0, index + 1).join("."));
+}
+
+/** Nodes in which all of some words occur, in the order of the tree; none for no words. */
+export function matching(nodes: Map<string, TreeNode>, words: string): TreeNode[] {
+  const wanted = words.toLowerCase().split(/\s+/).filter(Boolean);
+  const has = ({ type, name, ports, template, path }: TreeNode) => {
+    const text = `${type} ${name} ${ports} ${template} ${path}`.toLowerCase();
+    return wanted.every((word) => text.includes(word));
+  };
+  return wanted.length === 0 ? [] : [...nodes.values()].filter(has);
 }
 
 export const stateOf = (node: { index: number }, digits: string): NodeState =>

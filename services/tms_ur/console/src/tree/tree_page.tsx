@@ -1,9 +1,10 @@
 // The live tree of a run, and one sentence with the reason of its present state.
 
 import { siteNow, treeOf } from "old/server.js";
-import { useRef } from "react";
+import { useMemo, useRef, useState } from "react";
 import { useTranslation } from "react-i18next";
 import { Badge } from "../badge";
+import { useJournal } from "../journal/use_journal";
 import { useLive } from "../live";
 import type { ActiveRun, State, Tree } from "../models";
 import { Said } from "../said";
@@ -11,6 +12,7 @@ import { said, timeOfDay } from "../texts";
 import { TreeFlow } from "./flow";
 import { LiveFacts } from "./live_facts";
 import type { TreeNode } from "./shape";
+import { spentIn } from "./spent";
 import { useLast } from "./use_last";
 
 interface Shown {
@@ -35,6 +37,7 @@ export default function TreePage({ rest }: { rest: string }) {
   const id = shown.current?.id ?? "";
   const facts = (node: TreeNode) => <LiveFacts key={`${id} ${node.path}`} run={id} node={node} />;
   const alive = state?.scheduler.alive ?? true;
+  const timing = useTiming(id, run !== undefined);
   return (
     <>
       <h2>{t("p_tree")}</h2>
@@ -54,9 +57,19 @@ export default function TreePage({ rest }: { rest: string }) {
         <p id="no_tree">{t(alive ? "no_tree" : "scheduler_silent")}</p>
       )}
       {state && run && <Why run={run} state={state} />}
-      {shown.current && <TreeFlow key={shown.current.id} {...shown.current} last={last} facts={facts} />}
+      {shown.current && (
+        <TreeFlow key={shown.current.id} {...shown.current} last={last} facts={facts} timing={timing} />
+      )}
     </>
   );
+}
+
+/** How long the nodes of a run took; its journal is read only while that is shown. */
+function useTiming(id: string, live: boolean) {
+  const [shown, setShown] = useState(false);
+  const { journal } = useJournal(shown ? id : "", live);
+  const spent = useMemo(() => journal && spentIn(journal, journal.events.length, siteNow()), [journal]);
+  return { shown, spent, onShow: setShown };
 }
 
 /** Why it does not move on, or what it does. */

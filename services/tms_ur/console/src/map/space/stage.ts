@@ -52,7 +52,9 @@ export class Stage {
     names: HTMLElement,
     view: View,
   ) {
-    this.renderer = new WebGLRenderer({ canvas, antialias: false });
+    // without alpha, the page need not mix the picture with what is behind it
+    const context = canvas.getContext("webgl2", { alpha: false, antialias: false, stencil: false }) ?? undefined;
+    this.renderer = new WebGLRenderer({ canvas, antialias: false, ...(context && { context }) });
     this.renderer.outputColorSpace = LinearSRGBColorSpace;
     this.scene.background = new Color(SKY);
     this.scene.add(this.things, this.people);

@@ -13,7 +13,7 @@ import type { Ground } from "../../models";
 import { COARSEST, Field, strides, type Tile, trianglesOf } from "./field";
 import { meshOf } from "./mesh";
 
-const MOST = 24_000; // triangles of the ground: 1,000 take about 1 ms without graphics hardware
+const MOST = 12_000; // triangles of the ground: 1,000 take about 1 ms without graphics hardware
 const MOST_DESIGN = 12_000;
 const DESIGN = 0x3b82f6;
 
