@@ -3,7 +3,7 @@
 from tms_kit.reasons import Moved
 from tms_kit.subtask import Progress, Subtask
 from tms_subtasks.records.digging_place import left_to_dig
-from tms_subtasks.records.earthwork import SHARED, Earthwork, bucket_of, counted, earthwork_of, job_of
+from tms_subtasks.records.earthwork import SHARED, Earthwork, bucket_of, counted, earthwork_of, fruitless, job_of
 
 
 class DigAgainUntil(Subtask):
@@ -17,7 +17,8 @@ class DigAgainUntil(Subtask):
         job, bucket = job_of(self.get_param_from_db, work.job), bucket_of(self.get_param_from_db, model_name)
         own, *trucks = self.machine.yard.loads([self.machine.name, *work.trucks], self.machine.check)
         now = {name: one.bank for name, one in zip(work.trucks, trucks, strict=True)}.get(bucket.truck, 0.0)
-        left = left_to_dig(self.machine, work, own.capacity, bucket.bearing)
+        empty = [one.point for one in fruitless(self.get_param_from_db, model_name)]
+        left = left_to_dig(self.machine, work, own.capacity, bucket.bearing, empty)
         found = counted(job, bucket, now, left=bool(left))
         self.set_param_in_db(SHARED, work.job, found.fields())
         progress(Moved(found.moved, job.volume, found.buckets))

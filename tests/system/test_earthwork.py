@@ -17,6 +17,7 @@ from conftest import CLI, NO_CONSOLE, PROJECT, Mesh, ports_of, running, site_dat
 pytestmark = [pytest.mark.system, pytest.mark.timeout(600)]
 SPEED = 10.0  # times real time
 VOLUME = float(os.environ.get("TMS_EARTH", "12"))  # m3 as it lay: three loads
+WIDE = ("area_x=[-22.5, -12.5, -12.5, -22.5]", "area_y=[-18.0, -18.0, -2.0, -2.0]")  # the sample's has about 35 m3
 RECORDS = ("zx200", "shared", "earthwork")
 MACHINES = {
     "zx200": {"model": "zx200"},
@@ -51,6 +52,8 @@ def mesh(own_domain: int, tmp_path: Path) -> Iterator[Mesh]:
         for name in RECORDS:
             made.tms("param", "load", str(PROJECT / "configs" / "parameters" / f"{name}.yaml"))
         made.tms("param", "set", "/EARTHWORK", f"volume={VOLUME}")
+        if "TMS_EARTH" in os.environ:
+            made.tms("param", "set", "zx200/earthwork_two_trucks", *WIDE)
         made.tms("task", "add", str(PROJECT / "configs" / "tasks" / "load_trucks_until_full.xml"))
         yield made
 

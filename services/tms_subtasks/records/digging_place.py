@@ -1,5 +1,7 @@
 """What is left to dig around an excavator, by the ground as it is now."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from tms_kit.machine import Machine
@@ -12,8 +14,12 @@ from tms_subtasks.records.earthwork import Earthwork
 AROUND = 0.5  # m of ground beside the area: a bucket is as wide
 
 
-def left_to_dig(machine: Machine, work: Earthwork, holds: float, swing: float) -> list[DigPoint]:
+def left_to_dig(
+    machine: Machine, work: Earthwork, holds: float, swing: float, without: Sequence[DigPoint]
+) -> list[DigPoint]:
     """Where it may dig, the best first; `holds`: its bucket [m3, loose], `swing`: where its load goes [rad, base_link].
+
+    `without`: digs that have brought nothing; what is like one of them is left out.
 
     Raises:
         SubtaskFailed: NoPart, or who does not tell what must be known.
@@ -25,7 +31,8 @@ def left_to_dig(machine: Machine, work: Earthwork, holds: float, swing: float) -
     x0, y0, x1, y1 = work.bounds
     ground, design = yard.ground((x0 - AROUND, y0 - AROUND, x1 + AROUND, y1 + AROUND), work.floor, check)
     tool = Digging.of(bucket, holds, work.near, work.far, work.deepest)
-    return dig_points(ground, design, stand, tool, work.area, yard.taken(machine.name), swing)
+    found = dig_points(ground, design, stand, tool, work.area, yard.taken(machine.name), swing)
+    return [one for one in found if not any(one.like(other) for other in without)]
 
 
 def standing(machine: Machine, floor: float) -> Stand:

@@ -3,16 +3,18 @@
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 from pydantic import Field, ValidationError, model_validator
 
 from tms_kit.subtask import Params, SubtaskFailed
 from tms_machine.reasons import BadRecord, ListsDiffer
 from tms_reason.validation import Wrong, explain
+from tms_soil.dig_point import DigPoint
 from tms_soil.surface import Bounds, Point
 
 SHARED = ""  # machine of a record that all share
+NOTHING = 0.04  # m3 in a bucket, as it lay: half of the least that a dig is to bring
 DIG, DUMP = "dig_point", "dump_point"  # records of the excavator that excavate_simple and release_simple read
 Read = Callable[[str, str], Mapping[str, Any]]
 P = TypeVar("P", bound=Params)
@@ -72,6 +74,31 @@ class Bucket(Params):
         return math.atan2(self.y, self.x)
 
 
+class Fruitless(NamedTuple):
+    """A dig that has brought nothing."""
+
+    number: int  # of its bucket
+    x: float  # m, base_link of the excavator
+    y: float  # m
+    depth: float  # m
+
+    @property
+    def point(self) -> DigPoint:
+        """As one that is compared with others."""
+        return DigPoint(self.x, self.y, 0.0, self.depth, 0.0, 0.0, 0.0)
+
+
+class Dug(Params):
+    """The dig that was chosen last."""
+
+    number: int = Field(ge=0)  # of its bucket
+    x: float = 0.0  # m, base_link of the excavator
+    y: float = 0.0  # m
+    depth: float = 0.0  # m
+    # number, x, y and depth of each dig before it that has brought nothing
+    fruitless: list[float] = Field(default_factory=list)
+
+
 @dataclass(frozen=True)
 class Counted:
     """A job after a look at the last bucket."""
@@ -116,6 +143,23 @@ def job_of(read: Read, name: str) -> Job:
 def bucket_of(read: Read, machine: str) -> Bucket:
     """The bucket for which a dump point was chosen last. Raises as `earthwork_of`."""
     return _as(Bucket, read, machine, DUMP)
+
+
+def fruitless(read: Read, machine: str) -> list[Fruitless]:
+    """The last digs, as far back as none has brought anything. Raises as `earthwork_of`.
+
+    Where an arm comes less deep than the ground promises, the ground is as before, and would promise the same again.
+    """
+    dig, bucket = _as(Dug, read, machine, DIG), bucket_of(read, machine)
+    if bucket.number == 0 or bucket.bank >= NOTHING:
+        return []
+    told = dig.fruitless
+    found = [Fruitless(int(told[k]), *told[k + 1 : k + 4]) for k in range(0, len(told) - 3, 4)]
+    if not found or found[-1].number not in (bucket.number, bucket.number - 1):
+        found = []  # something was brought since
+    if dig.number == bucket.number:
+        found.append(Fruitless(dig.number, dig.x, dig.y, dig.depth))
+    return found
 
 
 def _as(kind: type[P], read: Read, machine: str, record: str) -> P:

@@ -357,6 +357,18 @@ def test_a_crash_in_the_middle_of_a_dig_loses_nothing(pc: Pc) -> None:
     assert dug.parts["dig"] > 2.0, "also the time before the crash"
 
 
+def test_a_crash_between_a_save_and_the_end_of_its_journal(pc: Pc, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("tms_ground.journal.Journal.drop", lambda *_: None)
+    pc.dig([*BUCKET, *[BACK] * 3])
+    (first,) = pc.cycles("zx200")
+    held = pc.load("ic120")
+    pc.start()
+    pc.look()
+    assert pc.cycles("zx200") == [first] and pc.load("ic120") == pytest.approx(held), (
+        "what the file holds is not told again"
+    )
+
+
 def test_a_journal_that_was_cut_off_counts_as_far_as_it_reaches(pc: Pc) -> None:
     pc.dig([*dig_poses(), Arm(-0.6, *HOLD)])
     held = pc.load("zx200")

@@ -153,6 +153,24 @@ def test_nothing_left_is_a_refusal(yard: Yard, records: Records) -> None:
         execute(ChooseDigPoint, Machine("zx200", yard), records)
 
 
+def test_a_dig_that_brings_nothing_is_not_tried_for_ever(yard: Yard, records: Records) -> None:
+    """The ground promises soil that the arm does not get: it digs elsewhere, and at last the job is done."""
+    records.of["", "EARTHWORK"] |= {"volume": 9.0, "counted": 0}
+    records.of["zx200", "dump_point"] |= {"number": 0, "bank": 0.0, "before": 0.0}
+    records.of["zx200", "dig_point"]["number"] = 0
+    job, dug = records.of["", "EARTHWORK"], list[tuple[float, float, float]]()
+    while not job["done"] and len(dug) < 300:
+        execute(ChooseDigPoint, Machine("zx200", yard), records)
+        point = records.of["zx200", "dig_point"]
+        dug.append((point["x"], point["y"], point["depth"]))
+        brings = 0.5 if len(dug) == 4 else 0.0
+        records.of["zx200", "dump_point"] |= {"number": point["number"], "bank": brings}
+        execute(DigAgainUntil, Machine("zx200", yard), records)
+    assert job["done"] and job["counted"] == len(dug) > 20
+    assert len(set(dug[:4])) == 4 and dug[4] == dug[0], "after one that brings soil all are tried again"
+    assert len(set(dug[4:])) == len(dug) - 4
+
+
 def test_the_truck_that_stands_in_reach_and_has_room_is_loaded(yard: Yard, records: Records) -> None:
     yard.carried |= {"zx200": 0.75, "ic120": 1.0}
     yard.places["ic120"] = AT_FACE
