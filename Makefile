@@ -17,46 +17,55 @@ COMPOSE ?= $(if $(shell $(DOCKER) compose version 2>/dev/null),$(DOCKER) compose
 # The distribution that is built here: the next `make` must not undo `make interfaces NAV2_DISTRO=humble`.
 NAV2_DISTRO ?= $(or $(patsubst .interfaces-%,%,$(notdir $(firstword $(wildcard $(VENV)/.interfaces-*)))),jazzy)
 LOCKS := deploy/requirements
-LOCK ?= requirements-dev.lock
+# The wheels of a bundle: nothing is asked of a registry then, and nothing is built.
+BUNDLE := $(abspath $(wildcard wheels))
+LOCK ?= $(if $(BUNDLE),requirements.lock,requirements-dev.lock)
+ifneq ($(BUNDLE),)
+export UV_FIND_LINKS=$(BUNDLE)
+export PIP_NO_INDEX=1
+export PIP_FIND_LINKS=$(BUNDLE)
+endif
+export UV_PACKAGE := uv==0.13.8
 export NAV2_DISTRO
 CONSOLE := services/tms_ur/console
 BUILT := services/tms_ur/built/index.html
 NPM = cd $(CONSOLE) && PATH="$(abspath $(VENV))-console/bin:$$PATH" npm --silent
 UV := $(VENV)/bin/uv
+INSTALL = $(UV) pip install -q $(if $(BUNDLE),--no-index)
 PY := $(VENV)/bin/python
 TMS := $(VENV)/bin/tms $(if $(SITE),--site $(SITE))
 # A sourced ROS installation would mix its libraries into the venv's.
 unexport PYTHONPATH LD_LIBRARY_PATH AMENT_PREFIX_PATH CMAKE_PREFIX_PATH _ROS_WHEELS_BOOTSTRAP_COMPLETE
 .DEFAULT_GOAL := help
-.PHONY: help setup console console-types interfaces locks demo test test-fast up down status logs restart lint conformance bench verify pictures soak drill simulate areas replay model traces mutants mutmut coverage nightly test-docker system containers clean
+.PHONY: help setup console console-types bundle interfaces locks demo test test-fast up down status logs restart lint conformance bench verify pictures soak drill simulate areas replay model traces mutants mutmut coverage nightly test-docker system containers clean
 
 help: ## this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 14
 
-setup: $(VENV)/.ready $(VENV)-store/.ready $(BUILT) ## everything that the other targets need (they call it)
-	@$(PY) -m compileall -q -x 'services/interfaces' services tests  # where Python itself may not write it, each process would compile anew
+setup: $(VENV)/.ready $(if $(BUNDLE),$(if $(wildcard wheels/secantusdb-*),$(VENV)-store/.ready),$(VENV)-store/.ready $(BUILT)) ## everything that the other targets need (they call it)
+	@$(PY) -m compileall -q -x 'services/interfaces' services $(wildcard tests)  # where Python itself may not write it, each process would compile anew
 
 system:
-	@sh deploy/system-packages.sh
+	@sh deploy/system-packages.sh $(if $(BUNDLE),python,setup)
 
 $(UV): | system
 	$(PYTHON) -m venv $(VENV)
-	$(VENV)/bin/pip install -q --disable-pip-version-check uv==0.13.8
+	$(VENV)/bin/pip install -q --disable-pip-version-check $(UV_PACKAGE)
 
 $(VENV)/.requirements: $(LOCKS)/requirements.lock $(LOCKS)/requirements-dev.lock | $(UV)
-	$(UV) pip install -q --compile-bytecode -p $(PY) --require-hashes -r $(LOCKS)/$(LOCK)
+	$(INSTALL) --compile-bytecode -p $(PY) --require-hashes -r $(LOCKS)/$(LOCK)
 	@touch $@
 
 $(VENV)-store/.ready: $(LOCKS)/requirements-store.lock | $(UV)
 	$(PYTHON) -m venv $(VENV)-store
-	$(UV) pip install -q --compile-bytecode -p $(VENV)-store/bin/python --require-hashes -r $(LOCKS)/requirements-store.lock
+	$(INSTALL) --compile-bytecode -p $(VENV)-store/bin/python --require-hashes -r $(LOCKS)/requirements-store.lock
 	@touch $@
 
 # Node.js and the packages of the console have an environment of their own, and no script of a package runs. Node looks
 # for packages in the folders above a source, so there is a link to them.
 $(VENV)-console/.ready: $(LOCKS)/requirements-console.lock $(addprefix $(CONSOLE)/,package.json package-lock.json .npmrc) | $(UV)
 	$(PYTHON) -m venv $(VENV)-console
-	$(UV) pip install -q -p $(VENV)-console/bin/python --require-hashes -r $(LOCKS)/requirements-console.lock
+	$(INSTALL) -p $(VENV)-console/bin/python --require-hashes -r $(LOCKS)/requirements-console.lock
 	cp $(filter $(CONSOLE)/%,$^) $(VENV)-console
 	cd $(VENV)-console && PATH="$(abspath $(VENV))-console/bin:$$PATH" npm ci --silent
 	@ln -sfn $(abspath $(VENV))-console/node_modules node_modules
@@ -70,15 +79,17 @@ console: $(BUILT) ## build the pages of the console
 console-types: setup ## the API's types for the console, after a change of the API
 	@cd tests && $(abspath $(PY)) -m console_types
 
-$(VENV)/.interfaces-$(NAV2_DISTRO): $(VENV)/.requirements $(LOCKS)/build.lock $(LOCKS)/interfaces.txt $(shell find services/interfaces -type f -not -name '*.pyc')
-	@echo "building the ROS interface packages (two to three minutes)"
-	$(UV) pip install -q --compile-bytecode -p $(PY) --no-deps --build-constraints $(LOCKS)/build.lock -r $(LOCKS)/interfaces.txt
+$(VENV)/.interfaces-$(NAV2_DISTRO): $(VENV)/.requirements $(LOCKS)/build.lock $(shell find services/interfaces -type f -not -name '*.pyc')
+	@rm -rf $(VENV)/interfaces
+	$(if $(BUNDLE),,@echo "building the ROS interface packages (two to three minutes)")
+	$(if $(BUNDLE),,$(UV) build -q -p $(PY) --wheel --build-constraints $(LOCKS)/build.lock -o $(VENV)/interfaces services/interfaces)
+	$(INSTALL) --compile-bytecode -p $(PY) --no-deps --reinstall $(or $(BUNDLE),$(VENV)/interfaces)/tms_interfaces-*.whl
 	$(PY) services/interfaces/_wheel/stubs.py
 	@rm -f $(VENV)/.interfaces-*
 	@touch $@
 
 $(VENV)/.ready: $(VENV)/.interfaces-$(NAV2_DISTRO) pyproject.toml
-	$(UV) pip install -q -p $(PY) --no-deps --build-constraints $(LOCKS)/build.lock -e .
+	$(INSTALL) -p $(PY) --no-deps --build-constraints $(LOCKS)/build.lock -e .
 	@touch $@
 
 # uv keeps the versions that are in a lock already.
@@ -90,6 +101,9 @@ locks: | $(UV) ## lock the requirements of deploy/requirements/*.in anew (UPGRAD
 	$(COMPILE) --generate-hashes requirements-store.in -o requirements-store.lock
 	$(COMPILE) --generate-hashes requirements-console.in -o requirements-console.lock
 	$(COMPILE) build.in -o build.lock
+
+bundle: setup ## one file for PCs without internet, where it needs only `make setup` (OUT=dist; STORE=1: with the embedded store; IMAGE=ros2-tms)
+	@$(if $(BUNDLE),echo "this is a bundle: make it where the project comes from" >&2; exit 2,DOCKER=$(DOCKER) STORE="$(STORE)" IMAGE="$(IMAGE)" sh deploy/bundle.sh $(VENV) $(or $(OUT),dist))
 
 interfaces: $(VENV)/.interfaces-$(NAV2_DISTRO) ## build the .msg/.srv/.action packages (NAV2_DISTRO=humble for Humble machines)
 

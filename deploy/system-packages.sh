@@ -1,6 +1,6 @@
 #!/bin/sh
 # Prints the command that installs the missing system packages; as root, installs them.
-# Arguments are groups: setup (when there is none), test, containers, chromium, japanese, spin, debootstrap.
+# Arguments are groups: setup (when there is none), python, test, containers, chromium, japanese, spin, debootstrap.
 set -eu
 PATH=$PATH:${SBIN:-/usr/local/sbin:/usr/sbin:/sbin} # folders of nft and others, only in root's PATH
 missing=""
@@ -15,14 +15,22 @@ need() { # PACKAGE COMMAND...: the package is missing unless one of the commands
   lacks "$package"
 }
 
-setup() {
+python() {
   python=$(command -v "${PYTHON:-python3}" || true)
   if [ -z "$python" ]; then
-    for package in python3 python3-venv python3-dev; do lacks $package; done
+    for package in python3 python3-venv; do lacks $package; done
   else
     "$python" -c 'import sys; sys.exit(sys.version_info < (3, 10))' || {
       echo "Python 3.10 or newer is needed, $python is $("$python" -V 2>&1): set PYTHON=python3.x" >&2; exit 1; }
     "$python" -c 'import ensurepip, venv' 2>/dev/null || lacks python3-venv
+  fi
+}
+
+setup() { # and what builds the interface packages
+  python
+  if [ -z "$python" ]; then
+    lacks python3-dev
+  else
     "$python" -c 'import sys, sysconfig, pathlib
 sys.exit(not pathlib.Path(sysconfig.get_path("include"), "Python.h").exists())' || lacks python3-dev
   fi
@@ -77,7 +85,7 @@ for group in "$@"; do
     japanese) letters ;;
     spin) need spin spin ;;
     debootstrap) need debootstrap debootstrap ;;
-    setup | containers) "$group" ;;
+    setup | python | containers) "$group" ;;
     *) echo "no group of system packages: $group" >&2; exit 2 ;;
   esac
 done
