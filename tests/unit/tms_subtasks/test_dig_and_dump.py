@@ -132,9 +132,9 @@ def test_it_digs_where_the_ground_is_now(yard: Yard, records: Records) -> None:
 
 
 def test_what_the_planner_refuses_is_not_chosen(yard: Yard, records: Records) -> None:
-    machine = Machine("zx200", yard, refuses=2)
+    machine = Machine("zx200", yard, refuses=15)
     execute(ChooseDigPoint, machine, records)
-    assert len(machine.asked) == 3
+    assert len(machine.asked) == 16, "late in a job many are refused"
     assert records.of["zx200", "dig_point"]["x"] == machine.asked[-1][0][0]
 
 
