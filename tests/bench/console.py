@@ -66,6 +66,7 @@ def measure() -> Iterable[Figure]:
         domain, folder = stack.enter_context(claimed_domain()), Path(stack.enter_context(tempfile.TemporaryDirectory()))
         yield space(folder)  # before the mesh takes processor time
         yield from trees(folder)
+        yield findings(folder)
         port = ports_of(domain)
         site = folder / "site.yaml"
         site.write_text(yaml.safe_dump(site_data(domain, port)))
@@ -76,7 +77,6 @@ def measure() -> Iterable[Figure]:
         runs = [_start(mesh, folder, number) for number in range(RUNS)]
         address = f"http://127.0.0.1:{port + 90}"
         yield from _pages(address, runs[0])
-        yield findings(address)
         yield _consoles(mesh, port + 90)
         yield _press(port + 90)
 
@@ -130,7 +130,7 @@ def _journal(address: str, run: str) -> list[tuple[str, float]]:
         found += page
         if len(page) < 1000:
             break
-    changes = [event for event in found if event["kind"] == "node" and " -> RUNNING" in event["text"]]
+    changes = [event for event in found if event["kind"] == "node" and event["reason"]["args"].get("new") == "RUNNING"]
     return [(event["node"], datetime.fromisoformat(event["stamp"].replace("Z", "+00:00")).timestamp())
             for event in changes]  # fmt: skip
 

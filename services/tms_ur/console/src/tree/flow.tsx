@@ -98,7 +98,7 @@ function Flow({ tree, digits, leaf, last, facts, timing }: Props) {
 function Legend({ machines }: { machines: string[] }) {
   const { t } = useTranslation();
   return (
-    <ul className="plain legend" aria-label={t("machines")}>
+    <ul className="rows legend" aria-label={t("machines")}>
       {machines.map((name) => (
         <li key={name}>
           <span className={`swatch machine-${bandOf([name], machines)}`} aria-hidden="true" /> {name}
