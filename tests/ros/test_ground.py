@@ -14,7 +14,6 @@ from tms_msg_ground.msg import GroundContact, HeightPatch, SoilLoad
 from tms_msg_ground.srv import GetHeights, ReadSnapshot, TakeSnapshot, WriteSnapshot
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
-import few_processes
 from conftest import rearm
 from earth_rig import NAMES, SPEEDS, START, Arm, dig_poses
 from few_processes import Mesh, bare
@@ -46,6 +45,8 @@ ground: {{area: [-10, -10, 10, 10], soils: [{{soil: soft_rock, corners: [[-10, 3
 
 class Earth(Mesh):
     """With tms:ground and the stand-in of a zx200."""
+
+    SITE = SITE
 
     def prepare(self) -> None:
         for name in ("tms:store", "tms:db"):
@@ -99,8 +100,7 @@ class Earth(Mesh):
 
 
 @pytest.fixture
-def earth(tmp_path: Path, own_domain: int, monkeypatch: pytest.MonkeyPatch) -> Iterator[Earth]:
-    monkeypatch.setattr(few_processes, "SITE", SITE)
+def earth(tmp_path: Path, own_domain: int) -> Iterator[Earth]:
     for mesh in bare(tmp_path, own_domain, Earth):
         mesh.prepare()
         yield mesh

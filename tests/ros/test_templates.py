@@ -8,8 +8,7 @@ from tms_msg_db.srv import AddTask, AddTemplate, ListEvents, ListRuns, RemoveTem
 from tms_msg_ts.action import ExecuteTask
 from tms_msg_ts.srv import CancelRun, CheckTask
 
-import few_processes
-from few_processes import LIMIT, Mesh, bare
+from few_processes import LIMIT, SITE, Mesh, bare
 from tms_machine.values import from_parameters
 from tms_ros.client import Call
 from words import words
@@ -21,12 +20,16 @@ WAIT = """<root main_tree_to_execute="BehaviorTree"><BehaviorTree ID="BehaviorTr
 <Delay delay_msec="$ms$"><AlwaysSuccess name="{}"/></Delay></BehaviorTree><TreeNodesModel/></root>"""
 
 
+class Scheduled(Mesh):
+    """With a scheduler."""
+
+    SITE = SITE.replace("services: {{", "services: {{ts: {{role: cps}}, ")
+
+
 @pytest.fixture
-def mesh(tmp_path: Path, own_domain: int, monkeypatch: pytest.MonkeyPatch) -> Iterator[Mesh]:
+def mesh(tmp_path: Path, own_domain: int) -> Iterator[Mesh]:
     """A mesh with store, database and scheduler, and one task."""
-    site = few_processes.SITE.replace("services: {{", "services: {{ts: {{role: cps}}, ")
-    monkeypatch.setattr(few_processes, "SITE", site)
-    for mesh in bare(tmp_path, own_domain, Mesh):
+    for mesh in bare(tmp_path, own_domain, Scheduled):
         for name in ("tms:store", "tms:db", "tms:ts"):
             mesh.start(name)
         mesh.wait_ready()

@@ -25,8 +25,8 @@ def test_both_languages_have_the_same_commands() -> None:
     assert commands(JAPANESE) == commands(ENGLISH)
 
 
-@pytest.mark.parametrize("line", [line for line in commands(ENGLISH) if line.startswith("make ")])
-def test_every_make_command_names_its_site(line: str) -> None:
+@pytest.mark.parametrize("line", [line for line in commands(ENGLISH) if re.match("make (?!bundle)", line)])
+def test_every_make_command_of_a_mesh_names_its_site(line: str) -> None:
     assert "SITE=" in line, "otherwise it asks the demo"
 
 
