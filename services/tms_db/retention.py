@@ -80,11 +80,7 @@ def delete_cycles(db: Db, days: int, now: datetime) -> int:
     Raises:
         DbError: the store is away.
     """
-    with errors():
-        newest = db[CYCLE].find_one({}, {"ended_at": 1}, sort=[("ended_at", -1)])
-    if newest is None:
-        return 0
-    return _delete_before(db, CYCLE, min(now, newest["ended_at"]) - timedelta(days=days), "ended_at")
+    return _delete_older(db, CYCLE, "ended_at", days, now)
 
 
 def delete_recordings(db: Db, days: int, now: datetime) -> int:
@@ -93,11 +89,7 @@ def delete_recordings(db: Db, days: int, now: datetime) -> int:
     Raises:
         DbError: the store is away.
     """
-    with errors():
-        newest = db[RECORDING].find_one({}, {"begin": 1}, sort=[("begin", -1)])
-    if newest is None:
-        return 0
-    return _delete_before(db, RECORDING, min(now, newest["begin"]) - timedelta(days=days), "begin")
+    return _delete_older(db, RECORDING, "begin", days, now)
 
 
 def delete_grounds(db: Db, days: int, now: datetime) -> int:
@@ -114,6 +106,15 @@ def delete_grounds(db: Db, days: int, now: datetime) -> int:
         terrain.delete(file)
     DELETED.labels(GROUND).inc(len(old))
     return len(old)
+
+
+def _delete_older(db: Db, collection: str, field: str, days: int, now: datetime) -> int:
+    """Delete what is older than `days` by a field; ages count back from the newest one as well."""
+    with errors():
+        newest = db[collection].find_one({}, {field: 1}, sort=[(field, -1)])
+    if newest is None:
+        return 0
+    return _delete_before(db, collection, min(now, newest[field]) - timedelta(days=days), field)
 
 
 def _delete_before(db: Db, collection: str, time: str | datetime, field: str = "time") -> int:

@@ -82,9 +82,7 @@ class Keeper:
         self._missed = go_on(watch, app.log, unix_time())
         ERROR.set_function(self._mass_error)
         app.ros.poll_in_thread(PERIOD, self.look, "ground")
-        app.ros.poll_in_thread(
-            SAVES / max(1.0, self._speed), self.save, "ground_file"
-        )  # and what a crash has told again
+        app.ros.poll_in_thread(SAVES / max(1.0, self._speed), self.save, "ground_file")
         app.ros.poll_in_thread(CYCLES, self.deliver, "cycles")
         app.on_stop(self.save)
 

@@ -6,7 +6,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from browser.yard import Yard, serving
+from bench.rig.feeding import fed
+from browser.yard import Yard
 from tms_ur.ground_models import Ground
 from tms_ur.models import Joint, Machine, Place
 
@@ -48,18 +49,14 @@ class BigSite(Yard):
 @contextmanager
 def big_site(folder: Path) -> Iterator[str]:
     """Its console, fed as by real machines; gives the address."""
-    site, leave = BigSite(), threading.Event()
+    site = BigSite()
 
-    def feed() -> None:
+    def feed(leave: threading.Event) -> None:
         told = 0
         while not leave.wait(PERIOD):
             told += 1
             site.tell(told * PERIOD)
 
     site.tell(0.0)
-    feeder = threading.Thread(target=feed, daemon=True)
-    with serving(site, folder) as address:
-        feeder.start()
+    with fed(site, folder, feed) as address:
         yield address
-        leave.set()
-        feeder.join(10)

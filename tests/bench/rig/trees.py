@@ -8,8 +8,9 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from bench.rig.feeding import fed
 from bench.runner import Figure
-from browser.yard import RUN, Yard, serving, shape
+from browser.yard import RUN, Yard, shape
 from tms_ur.models import Event
 from unit.tms_ur.fakes import NOON
 
@@ -83,7 +84,7 @@ def _figure(name: str, value: float, floor: float, note: str) -> Figure:
 @contextmanager
 def _running(folder: Path) -> Iterator[str]:
     """A console whose run works on leaf after leaf; gives the address."""
-    yard, leave, tree = Yard(), threading.Event(), shape(BRANCHES, LEAVES)
+    yard, tree = Yard(), shape(BRANCHES, LEAVES)
     yard.receive()
     yard.journals = {"r-1": [Event(number=1, stamp=NOON, kind="tree", node="", text="", values={**tree})]}
     leaves = [path for path in tree["paths"] if path.count(".") == 2]
@@ -94,16 +95,12 @@ def _running(folder: Path) -> Iterator[str]:
         states = ("1" if path in on else "2" if i < at else "0" for i, path in enumerate(tree["paths"]))
         yard.board.put_runs([RUN.model_copy(update={"leaf": leaf, "nodes": "".join(states)})])
 
-    def feed() -> None:
+    def feed(leave: threading.Event) -> None:
         for leaf in leaves[len(leaves) // 2 :]:
             work(leaf)
             if leave.wait(PERIOD):
                 return
 
     work(leaves[len(leaves) // 2])
-    feeder = threading.Thread(target=feed, daemon=True)
-    with serving(yard, folder) as address:
-        feeder.start()
+    with fed(yard, folder, feed) as address:
         yield address
-        leave.set()
-        feeder.join(10)

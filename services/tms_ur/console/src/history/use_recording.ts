@@ -1,6 +1,7 @@
 // Reads the recording of a run, again and again while the run goes on.
 import { useEffect, useState } from "react";
 import type { Recording } from "../models";
+import { repeated } from "../repeated";
 import { get } from "../server";
 
 const POINTS = 1500; // of a series: more than a plot has pixels
@@ -11,28 +12,12 @@ export function useRecording(id: string, live: boolean): { recording: Recording 
   const [recording, setRecording] = useState<Recording | null>(null);
   const [error, setError] = useState<Error | null>(null);
   useEffect(() => {
-    let [timer, left] = [0, false];
-    const look = async () => {
-      try {
-        const found = await get("/api/recordings", {}, `run_id=${encodeURIComponent(id)}&points=${POINTS}`);
-        if (!left) {
-          setRecording(found);
-          setError(null);
-        }
-      } catch (why) {
-        if (!left) {
-          setError(why as Error);
-        }
-      }
-      if (live && !left) {
-        timer = window.setTimeout(look, EVERY);
-      }
+    const took = (found: Recording) => {
+      setRecording(found);
+      setError(null);
     };
-    look();
-    return () => {
-      left = true;
-      clearTimeout(timer);
-    };
+    const asked = `run_id=${encodeURIComponent(id)}&points=${POINTS}`;
+    return repeated(() => get("/api/recordings", {}, asked), took, setError, live ? EVERY : null);
   }, [id, live]);
   return { recording, error };
 }

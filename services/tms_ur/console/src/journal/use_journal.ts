@@ -1,6 +1,7 @@
 // Reads the journal of a run, and what is added to it while it goes on.
 import { useEffect, useMemo, useState } from "react";
 import type { Event } from "../models";
+import { repeated } from "../repeated";
 import { get } from "../server";
 import { type Journal, journalOf } from "./journal";
 
@@ -29,32 +30,19 @@ export function useJournal(id: string, live: boolean): { journal: Journal | null
   const [found, setFound] = useState<Found>({ id: "", events: [] });
   const [error, setError] = useState<Error | null>(null);
   useEffect(() => {
-    let left = false;
-    let timer = 0;
-    let known: Found = { id, events: [] };
-    const look = async () => {
-      try {
-        known = await readMore(known, () => left);
-        if (!left) {
-          setFound(known);
-          setError(null);
-        }
-      } catch (why) {
-        if (!left) {
-          setError(why as Error);
-        }
-      }
-      if (live && !left) {
-        timer = window.setTimeout(look, EVERY);
-      }
-    };
-    if (id !== "") {
-      look();
+    if (id === "") {
+      return;
     }
-    return () => {
-      left = true;
-      clearTimeout(timer);
+    let known: Found = { id, events: [] };
+    const read = async (left: () => boolean) => {
+      known = await readMore(known, left);
+      return known;
     };
+    const took = (now: Found) => {
+      setFound(now);
+      setError(null);
+    };
+    return repeated(read, took, setError, live ? EVERY : null);
   }, [id, live]);
   const events = id !== "" && found.id === id ? found.events : null;
   const journal = useMemo(() => events && journalOf(events.slice(0, MAX_EVENTS), events.length > MAX_EVENTS), [events]);

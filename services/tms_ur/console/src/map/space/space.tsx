@@ -2,6 +2,8 @@
 
 import { useEffect, useRef, useState } from "react";
 import { useTranslation } from "react-i18next";
+import type { Ground } from "../../models";
+import { repeated } from "../../repeated";
 import { get } from "../../server";
 import type { Scene } from "../picture";
 import type { View } from "../view";
@@ -68,23 +70,12 @@ function useGround(stage: Stage | null): number {
     if (stage === null) {
       return;
     }
-    let [timer, left] = [0, false];
-    const look = async () => {
-      const ground = await get("/api/ground").catch(() => null); // it stays as it was; the next look may be luckier
-      if (left) {
-        return;
-      }
-      if (ground !== null) {
-        stage.setGround(ground);
-        setTimes((before) => before + 1);
-      }
-      timer = window.setTimeout(look, EVERY);
+    const took = (ground: Ground) => {
+      stage.setGround(ground);
+      setTimes((before) => before + 1);
     };
-    look();
-    return () => {
-      left = true;
-      clearTimeout(timer);
-    };
+    const failed = () => undefined; // it stays as it was; the next look may be luckier
+    return repeated(() => get("/api/ground"), took, failed, EVERY);
   }, [stage]);
   return times;
 }
