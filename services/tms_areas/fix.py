@@ -136,7 +136,9 @@ class Fix:
 
     @property
     def _limit(self) -> float:
-        return OLD if self.moves else RESTING
+        """How old a pose may be: with two words for it that the machine stands, older than with one."""
+        rests = not self.moves and (self.motion is None or self.motion.rests)
+        return RESTING if rests else OLD
 
     def _doubt(self, why: Reason, at: float) -> None:
         self.wrong, self.wrong_at = why, at

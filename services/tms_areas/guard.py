@@ -65,8 +65,8 @@ class Guard:
         here = (motion.x, motion.y, motion.yaw)
         body = self.body(joints)
         if told:
-            return self.law.path(body, (here, *way)) or self.law.arriving(body, way[-1])
-        found = (self.law.arriving(body, place) or self.law.apart(here, place) for place in way)
+            return self.law.path(body, (here, *way), motion.off) or self.law.arriving(body, way[-1], motion.off)
+        found = (self.law.arriving(body, place, motion.off) or self.law.apart(here, place) for place in way)
         return next((one for one in found if one is not None), None)
 
     def may_work(self, seen: Seen, way: Sequence[Mapping[str, float]]) -> Reason | None:

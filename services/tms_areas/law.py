@@ -19,7 +19,7 @@ from shapely.geometry.base import BaseGeometry
 from tms_areas.areas import FORBIDDEN, AreaSet
 from tms_areas.body import Body
 from tms_areas.braking import Tracks
-from tms_areas.fix import Motion
+from tms_areas.fix import SURE, Motion
 from tms_areas.reach import (
     Array,
     Covered,
@@ -113,15 +113,19 @@ class Law:
 
     # before a goal
 
-    def arriving(self, body: Body, place: Place) -> Reason | None:
-        """Why a machine on tracks must not go to a place: it would be stopped when it arrives there."""
-        at, reach = Motion(*place), replace(self._at_rest, back=-self._arrival, ahead=self._arrival)
-        return self._planned(body, at, reach)
+    def arriving(self, body: Body, place: Place, off: float = SURE) -> Reason | None:
+        """Why a machine on tracks must not go to a place: it would be stopped when it arrives there.
 
-    def path(self, body: Body, places: Sequence[Place]) -> Reason | None:
+        `off`: m that its pose may be off, as it is now.
+        """
+        at = Motion(*place, off=off, age=PLANNED)
+        return self._planned(body, at, replace(self._reach(at), back=-self._arrival, ahead=self._arrival))
+
+    def path(self, body: Body, places: Sequence[Place], off: float = SURE) -> Reason | None:
         """Why a machine must not drive along places, straight from each to the next: where it would be stopped.
 
-        It is taken to drive as fast as it can, and to brake for the end, and for turns on the spot.
+        It is taken to drive as fast as it can, and to brake for the end, and for turns on the spot; `off`: m that its
+        pose may be off, as it is now.
         """
         left = sum(math.dist(old[:2], new[:2]) for old, new in itertools.pairwise(places))
         for old, new in itertools.pairwise(places):
@@ -130,7 +134,7 @@ class Law:
             for share, (x, y, yaw) in between(old, new):
                 speed, turning = self._paced(left - share * way, way, turn, 1.0 - share)
                 speed = -speed if backward else speed
-                motion = Motion(x, y, yaw, speed * math.cos(yaw), speed * math.sin(yaw), turning, age=PLANNED)
+                motion = Motion(x, y, yaw, speed * math.cos(yaw), speed * math.sin(yaw), turning, off, PLANNED)
                 if (wrong := self._planned(body, motion, self._reach(motion))) is not None:
                     return wrong
             left -= way
@@ -176,10 +180,6 @@ class Law:
         return Motion(motion.x + math.cos(course) * ahead, motion.y + math.sin(course) * ahead, motion.yaw + turn)
 
     # how far
-
-    @cached_property
-    def _at_rest(self) -> Reach:
-        return self._reach(Motion(0.0, 0.0, 0.0, age=PLANNED))
 
     @cached_property
     def _arrival(self) -> float:

@@ -97,7 +97,7 @@ class PlaceWatch:
             return LeaseOver(self._app.machine, min(stuck - evacuates))
         if stuck and seen.motion is not None:
             outside = guards(usable - lost)
-            if outside.law.arriving(outside.body(joints), way[-1]) is not None:
+            if outside.law.arriving(outside.body(joints), way[-1], seen.motion.off) is not None:
                 return OnlyOut(self._app.machine, min(stuck))
         likely: frozenset[str] = frozenset()
         if not told and seen.motion is not None:

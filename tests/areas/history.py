@@ -25,6 +25,8 @@ BLIND, MOVES = 1.2, 0.1
 BEAT = 0.05  # s between looks of the gateway
 LINK = 0.08  # s at most from a decision to the command at the machine
 GENTLE = 0.8  # share of the acceleration with which a driver brakes for its goal
+ALIGNED, STANDS = 0.05, 0.02  # rad, rad/s: where its turn on the spot ends, as in tms_control.pursuit
+AHEAD, CREEP = 2.0, 0.05  # m ahead on its line that it steers for, m/s with which it arrives
 WRONG = 0.45  # m that no pose is off but one after a jump: drift, noise, and what it travels until it is heard
 DASHES = 5  # kinds of dashes, by turns
 SLOWEST = 0.15  # s of the slowest poses
@@ -43,7 +45,11 @@ class Outline(Silhouette):
 
 @dataclass
 class Driver:
-    """Drives to goals one after the other, or wherever it likes."""
+    """Drives to goals one after the other, or wherever it likes.
+
+    To a goal it turns on the spot, stands, and drives along a straight line, as our controllers do; it knows how late
+    the tracks answer, as they do.
+    """
 
     random: random.Random
     wild: bool
@@ -53,11 +59,11 @@ class Driver:
     goals: list[Point]
     until: float = 0.0
     wish: tuple[float, float] = (0.0, 0.0)
+    begun: Place | None = None  # where the line to the present goal begins, and its heading
+    turned: bool = False
 
     def speeds(self, now: float, plant: Plant) -> tuple[float, float]:
-        """What it commands: speed and turning. It knows how late the tracks answer, as our controllers do."""
-        late = plant.dead_time + plant.lag
-        x, y, yaw = plant.x, plant.y, plant.yaw + plant.w * late
+        """What it commands: speed and turning."""
         if self.wild:
             if now >= self.until:
                 self.until = now + self.random.uniform(1.0, 8.0)
@@ -66,17 +72,35 @@ class Driver:
             return self.wish
         if not self.goals:
             return 0.0, 0.0
-        dx, dy = self.goals[0][0] - x, self.goals[0][1] - y
-        away, off = math.hypot(dx, dy), math.remainder(math.atan2(dy, dx) - yaw, math.tau)
-        if away < NEAR:
+        if self.begun is None:
+            here = plant.x, plant.y, plant.yaw
+            self.begun = (*here[:2], _facing(here, (*self.goals[0], 0.0))[2])
+        late = plant.dead_time + plant.lag
+        yaw = plant.yaw + plant.w * late
+        if not self.turned:
+            return 0.0, self._turn(self.begun[2], yaw, plant)
+        return self._along(self.begun, yaw, plant, late)
+
+    def _turn(self, heading: float, yaw: float, plant: Plant) -> float:
+        off = math.remainder(heading - yaw, math.tau)
+        aligned = abs(off) < ALIGNED
+        self.turned = aligned and abs(plant.w) < STANDS
+        return 0.0 if aligned else max(-self.turn_top, min(self.turn_top, off))
+
+    def _along(self, line: Place, yaw: float, plant: Plant, late: float) -> tuple[float, float]:
+        """Pure pursuit of a line to the present goal."""
+        x, y, heading = line
+        c, s = math.cos(heading), math.sin(heading)
+        dx, dy = plant.x - x, plant.y - y
+        beside = -s * dx + c * dy
+        left = math.dist((x, y), self.goals[0]) - (c * dx + s * dy) - plant.v * late
+        if left <= NEAR:
             self.goals.pop(0)
+            self.begun, self.turned = None, False
             return 0.0, 0.0
-        w = max(-self.turn_top, min(self.turn_top, 1.0 * off))
-        if abs(off) > 0.3:
-            return 0.0, w
-        return min(
-            self.top, math.sqrt(2 * GENTLE * self.acceleration * max(away - NEAR - plant.v * late, 0.0)) + 0.05
-        ), w
+        v = min(self.top, math.sqrt(2 * GENTLE * self.acceleration * (left - NEAR)) + CREEP)
+        off = math.remainder(heading + math.atan2(-beside, AHEAD) - yaw, math.tau)
+        return v, max(-self.turn_top, min(self.turn_top, 2 * v * math.sin(off) / math.hypot(beside, AHEAD)))
 
 
 @dataclass

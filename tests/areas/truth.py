@@ -12,7 +12,7 @@ SPACING = 0.1  # m between points of an edge that are looked at
 
 def inside(points: Array, polygon: Array) -> NDArray[np.bool_]:
     """Which points (N x 2) a polygon (K x 2) winds round (D. Sunday, 2001)."""
-    a, b = polygon, np.roll(polygon, -1, axis=0)
+    a, b = polygon, np.concatenate([polygon[1:], polygon[:1]])
     x, y = points[:, 0, None], points[:, 1, None]
     left = (b[:, 0] - a[:, 0]) * (y - a[:, 1]) - (x - a[:, 0]) * (b[:, 1] - a[:, 1])
     up = (a[:, 1] <= y) & (b[:, 1] > y) & (left > 0)

@@ -112,6 +112,13 @@ def test_a_machine_that_stands_may_tell_its_place_less_often() -> None:
     assert isinstance(fix.look(at + OLD + 0.01).unsure, PoseOld)
 
 
+def test_one_that_moves_by_its_poses_tells_its_place_often_whatever_its_odometry_says() -> None:
+    fix, now, _ = driving()
+    fix.odometry(0.0, 0.0)
+    assert fix.look(now + OLD - 0.01).unsure is None
+    assert isinstance(fix.look(now + OLD + 0.01).unsure, PoseOld)
+
+
 def test_a_deviation_that_poses_tell_counts_and_a_large_one_is_not_believed() -> None:
     fix, now, x = driving()
     before = fix.look(now).motion

@@ -142,6 +142,17 @@ def test_a_goal_must_leave_room_to_arrive() -> None:
     assert isinstance(law().arriving(SQUARE, (18.6, 0.0, 0.0)), LeavesArea)
 
 
+def test_what_a_pose_is_off_is_planned_for() -> None:
+    vague = 0.4
+    assert law().arriving(SQUARE, (17.0, 0.0, 0.0), vague) is None
+    near = next(x for x in np.arange(18.6, 17.0, -0.01) if law().arriving(SQUARE, (x, 0.0, 0.0)) is None)
+    assert isinstance(law().arriving(SQUARE, (near, 0.0, 0.0), vague), LeavesArea)
+    beside = [(0.0, 0.0, 0.0), (12.0, 0.0, 0.0)]
+    walls = (law(Area("wall", "blocked", ((5, y), (8, y), (8, 6), (5, 6)))) for y in np.arange(1.0, 5.0, 0.02))
+    free = next(one for one in walls if one.path(SQUARE, beside) is None)
+    assert isinstance(free.path(SQUARE, beside, vague), EntersArea)
+
+
 def test_a_path_is_refused_where_it_leads_through_a_closed_area() -> None:
     assert law(HUT).path(SQUARE, [(0.0, 0.0, 0.0), (12.0, 0.0, 0.0)]) is not None
     around = [(0.0, 0.0, 0.0), (0.0, 0.0, 1.57), (0.0, 7.0, 1.57), (0.0, 7.0, 0.0), (12.0, 7.0, 0.0)]
@@ -250,3 +261,16 @@ def test_a_goal_beside_a_hut_is_fine_unless_its_told_way_leads_through() -> None
     goal = (14.0, 0.0, 0.0)
     assert watch.may_drive(fix.look(now), JOINTS, [goal], told=False) is None
     assert isinstance(watch.may_drive(fix.look(now), JOINTS, [goal], told=True), EntersArea)
+
+
+@pytest.mark.parametrize("told", [True, False])
+def test_a_goal_is_refused_where_a_vague_pose_would_stop_it_on_the_way(told: bool) -> None:
+    watch, fix, now = guard(0.0)
+    goal = next(
+        [(x, 10.0, 0.0)] for x in np.arange(19.0, 10.0, -0.02)
+        if watch.law.arriving(watch.body(JOINTS), (x, 10.0, 0.0), fix.look(now).motion.off + 0.1) is None
+    )  # fmt: skip
+    there = [(0.0, 0.0, math.pi / 2), (0.0, 10.0, math.pi / 2), (0.0, 10.0, 0.0), *goal]
+    assert watch.may_drive(fix.look(now), JOINTS, there, told) is None
+    fix.heard(now, 0.0, 0.0, 0.0, 0.1)  # m
+    assert isinstance(watch.may_drive(fix.look(now), JOINTS, there, told), LeavesArea)
