@@ -102,6 +102,11 @@ class Trip:
             if contact is not None:
                 self._give_way(now, PathBlocked(contact.name, in_the_way(contact)))
 
+    @property
+    def way(self) -> Path | None:
+        """The path that it drives; None while it stands and searches, and after the goal."""
+        return self._path if self._pursuit is not None and self.verdict is None else None
+
     def waits_for(self, asked: Question) -> bool:
         """Whether the answer to a question still matters: not after a cancel. From any thread."""
         return self.asked is asked and self.verdict is None

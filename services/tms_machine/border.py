@@ -21,6 +21,7 @@ from tms_ros.node import Ros
 CANCEL_LIMIT = 3.0  # s after which a server without an answer has lost a cancel
 PRESS_LIVES = 1.5  # s; who presses in place of the gateway repeats it every 0.5 s
 RELAYING = "if_motions"  # permit of `<machine>:if` while it passes goals for motions on
+PLAN = "plan"  # topic of the navigation below /<machine>/: the way that it drives (nav_msgs/Path), as Nav2 tells it
 RELEASE_LIMIT = 0.5  # s for a machine to take the release of its emergency stop: that is a message without an answer
 
 

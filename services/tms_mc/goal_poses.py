@@ -5,7 +5,9 @@ from collections.abc import Sequence
 from typing import Any
 
 from geometry_msgs.msg import PoseStamped
+from nav_msgs.msg import Path
 
+from tms_control.path import Path as Way
 from tms_control.path import Pose
 from tms_machine.frames import MAP
 from tms_machine.geometry import about, is_orientation, yaw_of
@@ -45,6 +47,13 @@ def pose_of(stamped: PoseStamped) -> Pose:
     """A pose of a message."""
     at, q = stamped.pose.position, stamped.pose.orientation
     return Pose(at.x, at.y, yaw_of((q.x, q.y, q.z, q.w)))
+
+
+def in_map_along(way: Way, step: float) -> Path:
+    """The poses of a path, at most `step` [m] apart, for a message."""
+    told = Path(poses=[in_map(pose) for pose in way.poses(step)])
+    told.header.frame_id = MAP
+    return told
 
 
 def in_map(pose: Pose) -> PoseStamped:

@@ -13,6 +13,7 @@ from tms_mc.path_server import PathServer
 from tms_mc.surroundings import Surroundings
 from tms_mc.track_servers import TrackServers
 from tms_mc.tracks import Tracks
+from tms_mc.way_teller import WayTeller
 from tms_runtime.app import App
 
 
@@ -46,7 +47,7 @@ def _serve_tracks(app: App, guard: Guard, gateway: GatewayWatch, joints: Joints)
     tracks = Tracks(app, gateway, drive, joints)
     guard.watch(tracks.unready, lambda: tracks.stands, lambda _: tracks.stop())
     around = Surroundings(app)
-    servers = TrackServers(tracks, guard, around)
+    servers = TrackServers(tracks, guard, around, WayTeller(app))
     for field, action, run in (
         ("navigate_to_pose", NavigateToPose, servers.to_pose),
         ("navigate_through_poses", NavigateThroughPoses, servers.through_poses),

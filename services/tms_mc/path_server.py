@@ -4,15 +4,12 @@ from collections.abc import Callable
 from typing import Any
 
 from nav2_msgs.action import ComputePathToPose
-from nav_msgs.msg import Path
 
 from tms_config.clock import monotonic
-from tms_control.path import Path as Way
 from tms_control.path import Pose
 from tms_control.planner import Goal, Plan
 from tms_machine import stamps
-from tms_machine.frames import MAP
-from tms_mc.goal_poses import in_map, pose_of, wrong
+from tms_mc.goal_poses import in_map_along, pose_of, wrong
 from tms_mc.surroundings import Surroundings
 from tms_mc.tracks import Tracks
 from tms_reason.errors import SubtaskFailed
@@ -52,7 +49,7 @@ class PathServer:
         if isinstance(found, Reason):
             return _failed(found)
         took = stamps.duration(monotonic() - begun)
-        return Outcome.SUCCEEDED, ComputePathToPose.Result(path=_told(found.path), planning_time=took)
+        return Outcome.SUCCEEDED, ComputePathToPose.Result(path=in_map_along(found.path, STEP), planning_time=took)
 
     def _way(self, start: Pose, goal: Pose, over: Callable[[], bool]) -> Plan | Reason | None:
         """A path along roads, or else any; or why there is none."""
@@ -63,12 +60,6 @@ class PathServer:
             if not isinstance(found, Reason):
                 break
         return found
-
-
-def _told(way: Way) -> Path:
-    told = Path(poses=[in_map(pose) for pose in way.poses(STEP)])
-    told.header.frame_id = MAP
-    return told
 
 
 def _failed(why: Reason) -> Ended[Any]:

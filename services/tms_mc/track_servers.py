@@ -16,6 +16,7 @@ from tms_mc.goal_poses import in_map, pose_of
 from tms_mc.guard import Guard
 from tms_mc.surroundings import Surroundings
 from tms_mc.tracks import Tracks
+from tms_mc.way_teller import WayTeller
 from tms_reason.errors import SubtaskFailed
 from tms_reason.reason import Reason
 from tms_reason.wire import to_line
@@ -29,8 +30,8 @@ FAILED = 1  # error code of a goal
 class TrackServers:
     """Serves the navigation of one machine."""
 
-    def __init__(self, tracks: Tracks, guard: Guard, around: Surroundings) -> None:
-        self._tracks, self._guard, self._around = tracks, guard, around
+    def __init__(self, tracks: Tracks, guard: Guard, around: Surroundings, ways: WayTeller) -> None:
+        self._tracks, self._guard, self._around, self._ways = tracks, guard, around, ways
 
     def to_pose(self, goal: AnyGoal) -> Ended[Any]:
         """NavigateToPose."""
@@ -82,6 +83,7 @@ class TrackServers:
             while trip.verdict is None and not self._guard.closing:
                 sleep(FEEDBACK)
                 self._tracks.look(trip, self._around.ground())
+                self._ways.tell(trip.way)
                 goal.publish(progress(action, self._tracks.told(trip)))
         return _ended(action, goal, trip)
 

@@ -17,6 +17,7 @@ from tms_sim.machine import StandIn
 from tms_sim.sensor_model import Reading, SensorModel
 from tms_sim.sources import Topic, time_of, topics
 from tms_sim.truth import Truth
+from tms_sim.way_teller import WayTeller
 
 STEP_PERIOD = 0.04  # s
 TF_EVERY = 2  # periods a set of frames while something moves
@@ -42,6 +43,7 @@ class Telemetry:
         self._topics = made()
         self._sensors = SensorModel(round(REPLAYED / (STEP_PERIOD * self._speed)))
         self._impostor = Impostor(ros, made)
+        self._ways = WayTeller(ros, name, machine.base) if machine.base else None
         self._truth = Truth(ros, name, machine)
         self._tf = ros.publisher(TFMessage, "/tf")
         self._frames = TFMessage()
@@ -60,6 +62,8 @@ class Telemetry:
         for topic in self._topics:
             if topic.due(self._ticks, STEP_PERIOD):
                 topic.publish(reported)
+        if self._ways is not None:
+            self._ways.tell(self._ticks)
         self._impostor.switch(reported, self._machine.fault.second_publisher)
         if self._ticks % TF_EVERY == 0:
             self._publish_frames(reading)

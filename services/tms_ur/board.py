@@ -13,6 +13,7 @@ from tms_ur.watch_models import SeenBy, Watched
 
 MACHINE_SILENT = 2.0  # s, four periods of a machine's gateway
 SCHEDULER_SILENT = 5.0  # s, five periods of the scheduler's list of runs
+WAY_LIVES = 3.0  # s, three periods of a navigation that tells the way that it drives
 HOST_SILENT = 6.0  # s, three periods of a host agent; after that its PC may have no power
 
 
@@ -26,6 +27,7 @@ class Board:
         self._runs: list[ActiveRun] = []
         self._questions: list[Question] = []
         self._places: dict[str, tuple[Place, float]] = {}
+        self._ways: dict[str, tuple[list[tuple[float, float]], float]] = {}
         self._stops: dict[str, LastStop] = {}
         self._shared = SharedPlaces()
         self._watched: dict[str, Watched] = {}
@@ -53,6 +55,14 @@ class Board:
             before, _ = self._places.get(name, (None, None))
             self._places[name] = (place, self._clock() - age)
         if before != place:
+            self._publish()
+
+    def put_way(self, name: str, way: list[tuple[float, float]]) -> None:
+        """Take the way that a machine drives, which its navigation tells every second."""
+        with self._lock:
+            before, _ = self._ways.get(name, (None, None))
+            self._ways[name] = (way, self._clock())
+        if before != way:
             self._publish()
 
     def put_stop(self, name: str, stop: LastStop) -> None:
@@ -123,7 +133,7 @@ class Board:
                 time=utc_now(),
                 machines=[
                     _aged(machine, now, at, self._places.get(name), self._stops.get(name)).model_copy(
-                        update={"watched": self._watched.get(name, Watched())}
+                        update={"watched": self._watched.get(name, Watched()), "way": self._way(name, now)}
                     )
                     for name, (machine, at) in self._machines.items()
                 ],
@@ -134,6 +144,10 @@ class Board:
                 hosts=[_host(host, now - at) for _, (host, at) in sorted(self._hosts.items())],
                 shared=self._shared,
             )
+
+    def _way(self, name: str, now: float) -> list[tuple[float, float]]:
+        way, at = self._ways.get(name, ([], now))
+        return way if now - at < WAY_LIVES else []
 
     def _publish(self) -> None:
         for listener in self._listeners:

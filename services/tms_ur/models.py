@@ -61,6 +61,7 @@ class Machine(Model):
     watched: Watched = Watched()
     place: Place | None = Field(default=None, description="null: never told")
     place_age: float | None = Field(default=None, description="s since the place was told, null: never")
+    way: list[tuple[float, float]] = Field(default=[], description="places of the way that it drives now [m, map]")
     joints: list[Joint] = Field(default=[])
     joint_age: float | None = Field(default=None, description="s since the last joint states, null: never")
     age: float | None = Field(default=None, description="s since the gateway last reported, null: never")

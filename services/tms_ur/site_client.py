@@ -45,6 +45,7 @@ from tms_ur.ground_client import ground
 from tms_ur.ground_models import Ground
 from tms_ur.models import AddedTemplate, Event, Host, Place, Rearmed, Receipt, Run, Task, TaskText, Template
 from tms_ur.place_client import PlaceClient
+from tms_ur.planned_paths import PlannedPaths
 from tms_ur.reason_view import of_error, of_line, view
 from tms_ur.reasons import UnknownProcess
 from tms_ur.recording_client import Asked, recording
@@ -69,6 +70,7 @@ class SiteClient(RunCalls):
         self.palette = ""  # the nodes of trees, as XML; empty until the scheduler has told them
         self._inputs: tuple[list[InputState], float] | None = None  # read and replaced in one step
         self._places = Places(ros, {name: site.border(name) for name in names})
+        self._ways = PlannedPaths(ros, names)
         for name in names:
             ros.subscribe(MachineState, f"/{name}/rc/state", self._on_machine, latched=True)
             ros.subscribe(StopReceipt, f"/{name}/rc/receipts", self._on_receipt, depth=20, latched=True)
@@ -102,6 +104,8 @@ class SiteClient(RunCalls):
         self._inputs = (list(message.inputs), monotonic())
 
     def _update_places(self) -> None:
+        for name, way in self._ways.take():
+            self.board.put_way(name, way)
         for name in self._places.take():
             seen = self._places.place(name)
             if seen is not None:

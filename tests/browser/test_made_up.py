@@ -148,6 +148,16 @@ def test_the_map_stays_where_it_is_until_it_is_moved(page: Page, address: str, y
     expect(page.locator("#space")).to_have_attribute("data-pictures", re.compile(r"\d"))
 
 
+def test_the_way_that_a_machine_drives_is_on_the_map(page: Page, address: str, yard: Yard) -> None:
+    yard.board.put_place("ic120", Place(x=1.0, y=2.0, yaw=0.0))
+    page.goto(f"{address}/#map")
+    expect(page.locator("#map_box [data-machine=ic120]").first).to_be_visible()
+    way = page.locator("#map_box polyline.way")
+    expect(way).to_have_count(0)
+    yard.board.put_way("ic120", [(1.0, 2.0), (7.0, 3.0)])
+    expect(way).to_have_attribute("points", "1.00,-2.00 7.00,-3.00")
+
+
 def test_a_place_on_the_map_becomes_a_record(page: Page, address: str, yard: Yard) -> None:
     yard.board.put_place("ic120", Place(x=1.0, y=2.0, yaw=0.0))
     page.goto(f"{address}/#map")

@@ -16,6 +16,7 @@ from tms_msg_rc.srv import StopMachine
 from mc_rig import angles, armed, begin, ended, moving, send
 from operasim_rig import LIMIT, OperaSim, operasim
 from tms_control.reasons import GoalTaken
+from tms_machine.border import PLAN
 from tms_machine.values import Value, to_parameters
 from tms_reason import wire
 from tms_ros.goals import Outcome
@@ -69,9 +70,11 @@ def stands_at(site: OperaSim, pose: PoseStamped) -> bool:
 
 
 def test_a_pose_is_driven_to_through_the_gateway(site: OperaSim) -> None:
-    pose = ahead(site, 2.0)
+    pose, told = ahead(site, 2.0), site.hear(Path, PLAN)
     done(site, NavigateToPose, "rc/navigate_to_pose", NavigateToPose.Goal(pose=pose))
     assert stands_at(site, pose)
+    end = told[0].poses[-1].pose.position
+    assert (end.x, end.y) == pytest.approx((pose.pose.position.x, pose.pose.position.y), abs=0.1)
 
 
 def test_a_path_is_planned_without_the_gateway_and_followed_through_it(site: OperaSim) -> None:

@@ -81,7 +81,10 @@ def _cancelled(unit: Unit, now: float) -> None:
 
 
 def _left(unit: Unit, now: float) -> None:
-    """A latched machine that somebody moves is stopped again, if it tells the truth."""
+    """A latched machine that somebody moves is stopped again, if it tells the truth and nobody has taken it.
+
+    A person who gives it back while its gateway is away has not given it back.
+    """
     (begun, ends), core, plant = unit.levers, unit.gateway.core, unit.machine.plant
     unit.latched_since = unit.latched_since if core is not None and core.latch.cause is not None else now
     begun = max(begun, unit.lies_since)
@@ -90,6 +93,7 @@ def _left(unit: Unit, now: float) -> None:
         or unit.latched_since > begun
         or plant.speed == 0.0
         or unit.driven
+        or (core is not None and core.by_hand is not None)
         or plant.fault != Fault()
     ):
         return
@@ -114,7 +118,7 @@ def _abandoned(site: Site, run: Execution, now: float) -> None:
     for unit, _, life, key in run.orders.values() if run.core.phase is Phase.RUNNING else ():
         relay = unit.relays[SUBTASK]
         waits = min(relay.worked_for(), site.host.worked_for(), site.scheduler.worked_for(), now - run.hangs)
-        if relay.life != life and waits > GIVEN_UP and relay.killed_at > FOUND:  # before, nobody knows which it was
+        if relay.life != life and waits > GIVEN_UP and relay.silent_at > FOUND:  # before, nobody knows which it was
             raise Violation(f"{run.run_id} waits for {key}, whose process is gone for {waits:.1f} s")
 
 

@@ -35,8 +35,7 @@ class Topic:
 
     def _found(self, name: str) -> None:
         for writer in self.writers:
-            if writer.works() and writer.said is not None:
-                self.tell(name, *writer.said)
+            writer.tell_again(name)
         self.report(name)
 
     def tell(self, name: str, goal: bytes, holder: str) -> None:
@@ -75,6 +74,15 @@ class Writer:
             self._is(Asserted.ALIVE)
         elif self.asserted is Asserted.ALIVE:
             self._lapses()
+
+    def tell_again(self, name: str) -> None:
+        """A reader has come late: it gets what was said last; of a process that is frozen, when that thaws."""
+        if self.process.life == self.life:
+            self.process.handle(lambda: self._tell(name))
+
+    def _tell(self, name: str) -> None:
+        if self.said is not None:
+            self.topic.tell(name, *self.said)
 
     def frozen(self, seconds: float) -> None:
         """Its process is frozen: the lease lapses if that lasts."""

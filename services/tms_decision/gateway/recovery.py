@@ -68,9 +68,8 @@ def _take_over(gateway: Gateway, now: float, run: int) -> None:
 
 
 def _begin(gateway: Gateway, now: float, run: int) -> None:
-    number = 0 if run == UNKNOWN_RUN else run
-    cause = gateway.recovery.cause
-    gateway.recovery.stop = stops.stop(gateway, now, cause, StopKind.PLAIN, run=number, expected=UNKNOWN)
+    recovery, number = gateway.recovery, 0 if run == UNKNOWN_RUN else run
+    recovery.stop = stops.stop(gateway, now, recovery.cause, StopKind.PLAIN, run=number, expected=UNKNOWN)
 
 
 def _close(gateway: Gateway, now: float) -> None:

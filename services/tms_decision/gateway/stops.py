@@ -11,7 +11,7 @@ from tms_decision.gateway import effects as f
 from tms_decision.gateway import notes
 from tms_decision.gateway.events import ReceiptKept
 from tms_decision.gateway.state import Gateway, Goal, Stop
-from tms_proof.standstill import NOTHING, Expected
+from tms_proof.standstill import NOTHING, UNKNOWN, Expected
 from tms_reason.reason import Reason, Several
 
 STOP_PROVEN = 10.0  # s within which a gateway sees that a machine stands, or reports that it does not
@@ -50,6 +50,8 @@ def stop(
     goal, over = (active, now) if active is not None else gateway.last
     if goal is not None and goal.stop is None and now - over < gateway.watch.settles:
         expected = _expected(gateway, goal, over, now)
+    elif not gateway.recovery.over and (gateway.recovery.holder or gateway.recovery.unproven):
+        expected = UNKNOWN  # of a motion that goes on, this gateway has not seen how it began
     made = _begin(gateway, now, cause, latched, run or (owner.run if owner is not None else gateway.run or 0), expected)
     made.broken = broken
     if latched:
@@ -63,14 +65,13 @@ def stop(
 
 def _expected(gateway: Gateway, goal: Goal, over: float, now: float) -> Expected:
     """The motion that must be seen if a goal is stopped now, or was over a moment ago: its server may answer late."""
-    follower = goal.follower
     if not goal.sent:
         return NOTHING
-    if follower is None:
+    if goal.follower is None:
         return Expected(goal.sent)
-    since = goal.sent if follower.should_have_moved(over - goal.sent) else None
+    since = goal.sent if goal.follower.should_have_moved(over - goal.sent) else None
     arrived = goal.outcome == "SUCCEEDED"
-    return Expected(since, {} if arrived else follower.on_its_way(now, gateway.watch.dead_times, over))
+    return Expected(since, {} if arrived else goal.follower.on_its_way(now, gateway.watch.dead_times, over))
 
 
 def _begin(gateway: Gateway, now: float, cause: Reason, latched: bool, run: int, expected: Expected) -> Stop:

@@ -443,3 +443,18 @@ def test_a_machine_that_moves_while_a_receipt_waits_for_the_disk_is_stopped() ->
     rig.plant.turn(0.3, rig.now, 3.0)
     rig.run(1.0)
     assert rig.all(f.CancelAll)
+
+
+@pytest.mark.parametrize("at_once", [False, True])
+@pytest.mark.parametrize("left", [e.Left(None, "run-1", 7), e.Left(Foreign("rain"), unproven=True)], ids=str)
+def test_a_press_before_the_first_proof_does_not_believe_a_record_of_the_time_before(
+    left: e.Left, at_once: bool
+) -> None:
+    rig = Rig(left, at_once=at_once)
+    rig.look = replace(rig.look, reachable=False)  # its start goes on for some seconds
+    rig.happens(e.Signal(True))
+    rig.happens(e.Signal(False))
+    rig.run(3.0)
+    assert not rig.all(f.Tell), "nothing but a standing machine was seen, as in a record that is told again and again"
+    rig.run(9.0)
+    assert rig.receipt.confirmed

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, field
 
-from tms_ur.board import Board
+from tms_ur.board import WAY_LIVES, Board
 from tms_ur.models import ActiveRun, Host, Joint, LastStop, Machine, Place, Process
 from tms_ur.reason_view import view
 from tms_ur.reasons import MachineSilent
@@ -106,6 +106,20 @@ def test_a_place_has_an_age_of_its_own() -> None:
     watched.board.put_place("zx200", place)
     assert (watched.changes, watched.board.snapshot().machines[0].place_age) == (changes, 0.0)
     assert watched.board.snapshot().machines[1].place_age is None
+
+
+def test_a_way_is_shown_while_its_navigation_tells_it() -> None:
+    watched = Watched()
+    way = [(0.0, 0.0), (5.0, 1.0)]
+    watched.board.put_way("zx200", way)
+    changes = watched.changes
+    watched.now += WAY_LIVES - 0.1
+    watched.board.put_way("zx200", way)
+    assert watched.changes == changes
+    watched.now += WAY_LIVES - 0.1
+    assert watched.board.snapshot().machines[0].way == way
+    watched.now += 0.2
+    assert watched.board.snapshot().machines[0].way == []
 
 
 def test_a_machine_tells_since_when_it_is_as_it_is() -> None:

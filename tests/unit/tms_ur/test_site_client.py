@@ -35,7 +35,7 @@ def test_places_of_machines_and_their_ages(monkeypatch: pytest.MonkeyPatch) -> N
     ros: Any = SimpleNamespace(
         peer=lambda *_: None, subscribe=lambda *_, **__: None, prepare=lambda *_: None,
         sample_arrivals=lambda _, topic: lambda: [Arrival(posed(1.234), monotonic() - AGE, 1)],
-        sample=lambda *_: lambda: [framed(5.0)],
+        sample=lambda kind, *_: lambda: [framed(5.0)] if kind is TFMessage else [],
         poll_in_thread=lambda _, step, __: step(),
     )  # fmt: skip
     machines = {name: SimpleNamespace(hardware={}) for name in BORDERS}

@@ -1382,6 +1382,15 @@ export interface components {
              */
             place_age?: number | null;
             /**
+             * Way
+             * @description places of the way that it drives now [m, map]
+             * @default []
+             */
+            way: [
+                number,
+                number
+            ][];
+            /**
              * Joints
              * @default []
              */

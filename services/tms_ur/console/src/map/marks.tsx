@@ -1,7 +1,7 @@
 // Areas, people and vehicles, records and paths on the map. Nothing of this protects anybody.
 
 import { useTranslation } from "react-i18next";
-import type { SeenBy, SharedPlace } from "../models";
+import type { Machine, SeenBy, SharedPlace } from "../models";
 import { type Area, drawn, middle, placeOf } from "./areas";
 import type { PlaceRecord } from "./goals";
 import { type Flat, svgPoints } from "./outline";
@@ -81,6 +81,13 @@ export function RecordMarks({ records, letters }: { records: PlaceRecord[]; lett
     </g>
   ));
 }
+
+/** The ways that machines drive now. */
+export const WayMarks = ({ machines }: { machines: readonly Machine[] }) =>
+  machines.map(
+    ({ name, way = [] }) =>
+      way.length > 1 && <polyline key={name} className="way" data-machine={name} points={svgPoints(way)} />,
+  );
 
 export const TrailMarks = ({ trails }: { trails: ReadonlyMap<string, Flat[]> }) =>
   [...trails].map(([name, points]) => <polyline key={name} className="trail" points={svgPoints(points)} />);

@@ -7,7 +7,7 @@ import type { Area } from "./areas";
 import { DraftMarks } from "./draft_marks";
 import type { PlaceRecord } from "./goals";
 import { MachineMark } from "./machine_mark";
-import { AreaMarks, Grid, RecordMarks, SpotMarks, TrailMarks } from "./marks";
+import { AreaMarks, Grid, RecordMarks, SpotMarks, TrailMarks, WayMarks } from "./marks";
 import type { Flat } from "./outline";
 import { type Size, type View, viewBox } from "./view";
 
@@ -43,6 +43,7 @@ export function Picture({ scene, view, size, chosen, draft }: Props) {
       )}
       <Grid view={view} size={size} />
       <TrailMarks trails={scene.trails} />
+      <WayMarks machines={state.machines} />
       <RecordMarks records={scene.records} letters={letters} />
       <SpotMarks seen={state.seen ?? []} />
       {state.machines.map((machine) => {

@@ -31,6 +31,9 @@ export function laid(scene: Scene, height: Height): Group {
   for (const trail of scene.trails.values()) {
     group.add(line(trail, TRAIL, height));
   }
+  for (const { way = [] } of scene.state.machines) {
+    group.add(line(way, GOAL, height));
+  }
   for (const { points, goal } of scene.records) {
     group.add(line(points, GOAL, height));
     group.add(...points.map(([x, y]) => post(x, y, goal ? 0.3 : 0.15, GOAL, height)));

@@ -1,0 +1,37 @@
+"""Tells the way of a stand-in's navigation as Nav2's planner does: from where it is, straight from pose to pose."""
+
+import math
+
+from geometry_msgs.msg import PoseStamped
+from nav_msgs.msg import Path
+
+from tms_machine.border import PLAN
+from tms_machine.frames import MAP
+from tms_ros.node import Ros
+from tms_sim.base import Base
+
+EVERY = 25  # ticks, a second
+
+
+class WayTeller:
+    """Of one stand-in."""
+
+    def __init__(self, ros: Ros, machine: str, base: Base) -> None:
+        self._plans, self._base = ros.publisher(Path, f"/{machine}/{PLAN}", 1), base
+
+    def tell(self, tick: int) -> None:
+        """Tell it once a second while there is one."""
+        legs = list(self._base.legs)
+        if tick % EVERY == 0 and legs:
+            places = [(self._base.x, self._base.y), *((leg.x, leg.y) for leg in legs)]
+            self._plans.publish(along([place for place in places if all(map(math.isfinite, place))]))
+
+
+def along(places: list[tuple[float, float]]) -> Path:
+    """Places [m] as a path in the map."""
+    path = Path(poses=[PoseStamped() for _ in places])
+    for pose, (x, y) in zip(path.poses, places, strict=True):
+        pose.pose.position.x, pose.pose.position.y, pose.pose.orientation.w = x, y, 1.0
+    for header in (path.header, *(pose.header for pose in path.poses)):
+        header.frame_id = MAP
+    return path
