@@ -9,7 +9,8 @@ The sign of a working gateway is its pulse, the lease of its permit, not its pro
     levers, and a crash of software that does not move the machine must not take it from that person;
   - a gateway that ends in order (`tms restart`, `tms down`) has stopped the machine: cancel and zero again, no alarm.
 
-  A press of the stop button that a gateway did not live to remember is handed on to its successor as a request.
+  A press of the stop button that a gateway did not live to remember is handed on to its successor as a request; it is
+  noted on the disk, too, should this process not live to do that.
 
   Only a gateway releases `emg_stop`. The commands leave from the pulse's thread, before they are logged and counted.
 """
@@ -25,6 +26,7 @@ from tms_config.processes import here
 from tms_decision.duty import Act, Duty, GatewayStatus, Press
 from tms_decision.permit_link import NOBODY
 from tms_decision.reasons import SoftwareStop
+from tms_host.pressed_notes import PressedNotes
 from tms_machine.border import Controls, standby, stood_in
 from tms_machine.permit import RemotePermit
 from tms_reason.wire import to_line
@@ -48,7 +50,6 @@ class StandbyGateway:
         self._done: Act | None = None  # the command since the gateway was lost, as it was logged
         self._controls = Controls(ros, machine, app.site.border(machine), keeps_emergency=False)
         self._ros, self._press = ros, Press()
-        ros.subscribe(Bool, "/emergency_signal", self._signal, depth=SIGNALS)
         ros.prepare(StopMachine, f"/{machine}/rc/stop")
         self._now, self._stood_in = ros.now, ros.publisher(Time, stood_in(machine), 1, latched=True)
         self._acts = ros.publisher(Bool, standby(machine), 1, latched=True)
@@ -95,9 +96,9 @@ class StandbyGateway:
         if self.duty.lost_since is not None:
             self._acts.publish(Bool(data=True))  # a goal that leaves now would be cancelled
 
-    def _signal(self, message: Bool) -> None:
-        if message.data:
-            self._press.since = monotonic()
+    def pressed(self) -> None:
+        """The stop button is pressed."""
+        self._press.since = monotonic()
 
     def _hand_on(self) -> None:
         """Tell a gateway of the press that it did not live to remember."""
@@ -130,12 +131,20 @@ class Standby:
         self._standbys = {row.full: StandbyGateway(app, str(row.machine)) for row in rows}
         if self._standbys:
             app.pulse.add(self._check)
+            self._notes = PressedNotes(app, [one.machine for one in self._standbys.values()])
+            app.ros.subscribe(Bool, "/emergency_signal", self._signal, depth=SIGNALS)
 
     def silent(self) -> dict[str, float]:
         """Gateways that are lost, and for how long [s]; from any thread."""
         now = monotonic()
         since = {name: one.duty.lost_since for name, one in self._standbys.items()}
         return {name: now - at for name, at in since.items() if at is not None}
+
+    def _signal(self, message: Bool) -> None:
+        if message.data:
+            self._notes.pressed()
+            for one in self._standbys.values():
+                one.pressed()
 
     def _check(self) -> None:
         now = monotonic()

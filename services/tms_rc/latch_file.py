@@ -1,8 +1,9 @@
 """What a gateway knows of the time before its start: notes on the disk of this PC. Without a note, it latches.
 
 A machine is armed only while its note says so: the note is synced before the machine counts as armed, and before the
-first goal of a run leaves, it names that run. To latch, the note is deleted, which also works on a full disk. No
-function of this module is called on the executor thread.
+first goal of a run leaves, it names that run. To latch, the note is deleted, which also works on a full disk; at a
+press of the stop button the host agent renames it, as this gateway may not live to latch. No function of this module is
+called on the executor thread.
 """
 
 import json
@@ -11,19 +12,21 @@ from pathlib import Path
 from typing import Any
 
 from tms_decision.gateway.events import Left
-from tms_decision.reasons import NoNote
+from tms_decision.reasons import NoNote, SoftwareStop
 from tms_rc.reasons import NoteUnreadable
 from tms_reason import texts, wire
 from tms_reason.reason import Reason
 from tms_runtime import durable
+from tms_runtime.state_folder import armed_note
 
 
 class LatchFile:
-    """`<state>/rc/<machine>.armed` and, for people, `.latched` with the cause."""
+    """`<state>/rc/<machine>.armed`, or `.pressed`; and, for people, `.latched` with the cause."""
 
     def __init__(self, folder: Path, machine: str) -> None:
         self._folder = folder / "rc"
-        self._armed, self._latched = self._folder / f"{machine}.armed", self._folder / f"{machine}.latched"
+        self._armed = armed_note(folder, machine)
+        self._pressed, self._latched = self._armed.with_suffix(".pressed"), self._armed.with_suffix(".latched")
         self._taken = self._folder / f"{machine}.taken"
         self._writing = threading.Lock()
 
@@ -31,6 +34,8 @@ class LatchFile:
         """How the machine was left. A damaged note, as a power cut leaves it, latches."""
         taken = str((_load(self._taken) or {}).get("taken", ""))
         note = _load(self._armed)
+        if note is None and self._pressed.exists():
+            return Left(SoftwareStop(), taken=taken, unproven=True)
         if note is None or note.get("armed") is not True:
             cause = self._cause() if note is None and not self._armed.exists() else NoteUnreadable()
             return Left(cause, taken=taken, unproven=self._unproven())
@@ -57,6 +62,7 @@ class LatchFile:
         """
         with self._writing:
             _write(self._armed, {"armed": True, "holder": holder, "run": run})
+            self._pressed.unlink(missing_ok=True)
 
     def latch(self, cause: Reason) -> None:
         """Note that the machine is latched, for the next start; the cause is kept if the disk has room for it.
@@ -65,7 +71,8 @@ class LatchFile:
             OSError: the note could not be deleted.
         """
         with self._writing:
-            self._armed.unlink(missing_ok=True)
+            for note in (self._armed, self._pressed):
+                note.unlink(missing_ok=True)
             if self._folder.exists():
                 durable.sync_folder(self._folder)
             try:

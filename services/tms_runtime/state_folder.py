@@ -14,6 +14,11 @@ UMASK = 0o077
 OTHERS = 0o077  # permissions of group and others
 
 
+def armed_note(folder: Path, machine: str) -> Path:
+    """The note on the disk that a machine is armed."""
+    return folder / "rc" / f"{machine}.armed"
+
+
 def make(folder: Path) -> None:
     """Make the folder, private from its first moment; folders above it get this user's usual permissions."""
     folder.mkdir(mode=0o700, parents=True, exist_ok=True)

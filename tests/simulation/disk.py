@@ -7,7 +7,7 @@ from typing import Any
 from simulation.world import Violation, World
 from tms_decision.gateway import effects as f
 from tms_decision.gateway import events as e
-from tms_decision.reasons import NoNote
+from tms_decision.reasons import NoNote, SoftwareStop
 from tms_reason.reason import Reason
 
 
@@ -35,6 +35,8 @@ class Notes:
     cause: Reason | None = None
     driver: str = ""
     unproven: bool = False
+    pressed: bool = False  # the host agent has renamed the note that says armed
+    armed_at: float = 0.0
     latch_told: bool = False  # the gateway's last word was that the machine is latched
     stalls: float = 0.0  # until then
     full: float = 0.0  # until then
@@ -53,6 +55,16 @@ class Notes:
         self._done = max(world.now, self._done, self.stalls) + 0.001 + world.random.random() * 0.01
         world.at(self._done, lambda: answer(self._written(effect)) if life() else None)
 
+    def press(self, alive: Callable[[], bool]) -> None:
+        """The host agent notes a press, unless it ends before."""
+        begun = self.world.now
+
+        def renamed() -> None:
+            if alive() and self.armed and self.armed_at < begun:
+                self.armed, self.cause, self.unproven, self.pressed = False, SoftwareStop(), True, True
+
+        self.world.at(max(begun, self.stalls) + 0.01, renamed)
+
     def _written(self, effect: f.KeepState | f.KeepDriver | f.KeepReceipt) -> e.Event:
         full = self.world.now < self.full
         if isinstance(effect, f.KeepReceipt):
@@ -66,6 +78,7 @@ class Notes:
             problem = None
         elif not full:
             self.armed, self.holder, self.run = True, effect.holder, effect.run
+            self.pressed, self.armed_at = False, self.world.now
         return e.NoteKept(effect.number, problem)
 
 

@@ -182,7 +182,7 @@ class GatewayProcess(PermitProcess):
         if any(isinstance(effect, f.Rearmed) and effect.armed for effect in effects):
             self.latched = self.notes.latch_told = False
             self.unit.missed = float("inf")
-            if not self.notes.armed:
+            if not (self.notes.armed or self.notes.pressed):
                 raise Violation(f"{self.name} is armed, and the disk does not say so")
         for effect in effects:
             self._one(effect)
@@ -243,7 +243,8 @@ class GatewayProcess(PermitProcess):
             raise Violation(f"goal {number} leaves after a stop, before a re-arm")
         order = self.asked[number]
         run = order.owner.run if order.owner is not None else 0
-        if not self.notes.armed or not self.notes.holder or self.notes.run != run:
+        said = self.notes.armed or self.notes.pressed  # of a press that it has not heard yet
+        if not said or not self.notes.holder or self.notes.run != run:
             raise Violation(f"goal {number} leaves, and the note does not say whose it is")
         if self.unit.driven:
             raise Violation(f"goal {number} leaves, and a person drives {self.unit.name}")

@@ -104,8 +104,11 @@ class HostAgent(Process):
 
     def pressed(self) -> None:
         """The stop button is pressed."""
+        life = self.life
         for standby in self._standbys:
             standby.press.since = self.world.now
+        for unit in self._units:
+            unit.gateway.notes.press(lambda: self.works() and self.life == life)
 
     def noticed(self, unit: Unit, name: str) -> None:
         """A process was started or has ended: who looks gets to know it a moment later."""

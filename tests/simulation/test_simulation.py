@@ -6,6 +6,7 @@ from dataclasses import replace
 import pytest
 
 from simulation import host
+from simulation.disk import Notes
 from simulation.plan import Planned, Press, Trapped, machines, plan
 from simulation.schedule import Schedule, shorter
 from tms_decision.gateway import motion, stops
@@ -73,9 +74,17 @@ def test_what_a_stranger_has_cancelled_is_still_on_its_way(monkeypatch: pytest.M
 
 def test_a_press_that_a_second_gateway_took_along_is_handed_on(monkeypatch: pytest.MonkeyPatch) -> None:
     """It was there for a second, showed its latch, and ended; the right one had started meanwhile."""
+    monkeypatch.setattr(Notes, "press", lambda *_: None)  # which is enough by itself
     assert Schedule(557426936).run().violation == ""
     monkeypatch.setattr(host, "alone", lambda gateway, now: gateway.alive(now))
     assert "before a re-arm" in Schedule(557426936).run().violation
+
+
+def test_a_press_outlives_a_gateway_and_its_host_agent(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The gateway was killed before the disk had its latch, and the host agent before it could tell the next one."""
+    assert Schedule(20280771).run().violation == ""
+    monkeypatch.setattr(Notes, "press", lambda *_: None)
+    assert "before a re-arm" in Schedule(20280771).run().violation
 
 
 def test_a_press_is_not_forgotten_when_its_gateway_is_killed_before_the_disk_has_the_latch() -> None:

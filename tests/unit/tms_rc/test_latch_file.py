@@ -6,11 +6,14 @@ from typing import Any
 
 import pytest
 
+from tms_config.clock import unix_ns
 from tms_decision.reasons import NoNote, SoftwareStop
+from tms_host.pressed_notes import press
 from tms_rc.latch_file import LatchFile, Left
 from tms_rc.reasons import NoteUnreadable
 from tms_rc.receipts import Receipts
 from tms_reason.reason import Foreign
+from tms_runtime.state_folder import armed_note
 
 
 def test_a_machine_without_a_note_is_latched(tmp_path: Path) -> None:
@@ -108,3 +111,23 @@ def test_a_note_of_an_earlier_release_keeps_its_words(tmp_path: Path) -> None:
     (tmp_path / "rc").mkdir()
     (tmp_path / "rc" / "zx200.latched").write_text(json.dumps({"cause": "software stop by mina"}))
     assert LatchFile(tmp_path, "zx200").read() == Left(Foreign("software stop by mina"), unproven=True)
+
+
+def test_a_press_that_the_host_agent_has_noted_latches(tmp_path: Path) -> None:
+    memory = LatchFile(tmp_path, "zx200")
+    memory.arm("20261122-1", 7)
+    press(armed_note(tmp_path, "zx200"), unix_ns())
+    assert LatchFile(tmp_path, "zx200").read() == Left(SoftwareStop(), unproven=True)
+    memory.arm()
+    assert LatchFile(tmp_path, "zx200").read() == Left(None)
+    press(armed_note(tmp_path, "zx200"), unix_ns())
+    memory.latch(NoNote())
+    assert LatchFile(tmp_path, "zx200").read().latched == NoNote()  # the gateway's own word is newer
+
+
+def test_a_press_says_nothing_of_a_machine_that_was_armed_after_it(tmp_path: Path) -> None:
+    before, memory = unix_ns(), LatchFile(tmp_path, "zx200")
+    press(armed_note(tmp_path, "zx200"), before)  # there is no note
+    memory.arm()
+    press(armed_note(tmp_path, "zx200"), before)
+    assert LatchFile(tmp_path, "zx200").read() == Left(None)
