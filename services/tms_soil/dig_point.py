@@ -69,8 +69,9 @@ class DigPoint:
     benefit: float  # m3 loose by second of a cycle
 
     def like(self, other: "DigPoint") -> bool:
-        """Whether an arm that cannot do the other one hardly can do this one: near it, and about as deep."""
-        return math.hypot(self.x - other.x, self.y - other.y) < NEAR and self.depth > other.depth - SHALLOWER
+        """Whether an arm that cannot do the other one hardly can do this one: near it, and about as low."""
+        low, others = self.z - self.depth, other.z - other.depth  # a ridge beside a hole is no place like the hole
+        return math.hypot(self.x - other.x, self.y - other.y) < NEAR and low < others + SHALLOWER
 
 
 def dig_points(

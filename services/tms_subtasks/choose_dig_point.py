@@ -10,7 +10,7 @@ from tms_soil.dig_point import DigPoint
 from tms_subtasks.records.digging_place import left_to_dig
 from tms_subtasks.records.earthwork import DIG, Earthwork, bucket_of, earthwork_of, fruitless, job_of
 
-TRIES = 40  # places that the planner is asked about, some tenths of a second each; late in a job few can be dug
+TRIES = 100  # places that the planner is asked about, some tenths of a second each; late in a job few can be dug
 THETA_W = 0.9  # rad, wished angle of the bucket; the planner takes the nearest one
 
 

@@ -123,3 +123,11 @@ def test_bucket_after_bucket_brings_what_was_told() -> None:
         for report in reports([(time + 10.0, START)]):
             earth.report(*report)
     assert set(NAMES) < set(made.names)
+
+
+def test_what_is_like_a_place_that_cannot_be_dug_is_near_it_and_as_low() -> None:
+    hole = DigPoint(0.0, -6.0, -0.6, 0.5, 1.0, 0.8, 0.04)
+    assert replace(hole, y=-6.3, z=-0.5).like(hole)
+    assert not replace(hole, y=-6.9).like(hole)
+    assert not replace(hole, depth=0.2).like(hole)
+    assert not replace(hole, y=-6.3, z=0.0).like(hole)  # the ridge beside it, from its top
