@@ -95,6 +95,16 @@ class Channel:
             first.received, first.stamped, first.place, last.received, last.stamped, last.place
         )
 
+    @property
+    def evident(self) -> bool:
+        """Whether the newest sample shows a motion that went so far that a jump back to its begin would be noticed."""
+        samples = self._samples
+        if not samples or not samples[-1].fast or not samples[-1].place:
+            return False
+        begun = max((i for i, one in enumerate(samples) if not one.fast), default=0)
+        speed = max(abs(one.speed or 0.0) for one in samples[begun:])
+        return self._distance(samples[begun].place, samples[-1].place) > self._spare(speed)
+
     def stood_since(self, start: float, seconds: float) -> bool:
         """Whether samples received and measured after `start` span `seconds` of standing, up to the newest."""
         if self.moving():
@@ -150,8 +160,7 @@ class Channel:
     def _leaps(self, before: ChannelSample, seconds: float, place: Place, speed: float | None) -> bool:
         """Whether no motion leads from one sample to the next."""
         limits, way = self._limits, self._distance(before.place, place)
-        seconds, spare = seconds * limits.scale, limits.resolution + BETWEEN
-        spare += JITTER * limits.scale * max(abs(speed or 0.0), abs(before.speed or 0.0))
+        seconds, spare = seconds * limits.scale, self._spare(max(abs(speed or 0.0), abs(before.speed or 0.0)))
         if way > SPEED_MARGIN * limits.top * seconds + spare:
             return True
         if speed is None or before.speed is None or seconds > WORST / 2 * limits.scale:
@@ -162,6 +171,10 @@ class Channel:
         else:
             speeds = abs(before.speed), abs(speed)
         return not min(speeds) * seconds - spare <= way <= max(speeds) * seconds + spare
+
+    def _spare(self, speed: float) -> float:
+        """How far two samples may be off the motion between them [rad or m]."""
+        return self._limits.resolution + BETWEEN + JITTER * self._limits.scale * speed
 
     def _distance(self, a: Place, b: Place) -> float:
         return distance(a, b, self._limits.turns)

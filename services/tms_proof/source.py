@@ -63,7 +63,8 @@ class SourceWatch:
         self._repeats: tuple[float, ...] = ()  # when messages came whose stamps did not advance
         self._number, self._back = 0, tuple[float, ...]()  # the last number, and when numbers went back
         self.new_clock: tuple[float, Reason] | None = None  # since when, why
-        self.fast = False  # whether its last message showed a motion
+        self.fast = False  # whether its last message showed a motion ...
+        self.evident = False  # ... that no replayed record could hide
         self.publishers: tuple[str, ...] = ()  # nodes, where there is more than one
         self._places: dict[str, Place] | None = None  # see `places`
         self._values: object = None
@@ -88,11 +89,12 @@ class SourceWatch:
         values = (dict(sample.places), dict(sample.speeds))
         if values != self._values:
             self._values, self.changed = values, sample.received
-        self.fast = False
+        self.fast = self.evident = False
         for name, place in sample.places.items():
             channel = self.channels[name]
             channel.add(sample.received, judged.measured, place, sample.speeds.get(name))
             self.fast = self.fast or (channel.last is not None and channel.last.fast)
+            self.evident = self.evident or channel.evident
 
     def age(self, now: float) -> float:
         """Seconds since the last sample of the channel that is silent for longest; infinite before its first one."""

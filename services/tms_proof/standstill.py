@@ -93,7 +93,8 @@ class StandStill:
         self._angles: dict[str, float] = {}
         self._way = 0.0
         self._quiet_since = -INFINITE  # when our last goal ended: its last commands may still be on their way
-        self._motion_at = -INFINITE  # when a motion was last seen
+        self._motion_at = -INFINITE  # when a motion was last seen ...
+        self._evident_at = -INFINITE  # ... that no replayed record could hide
         self._beyond: Reason | None = None  # the joint that the last message shows beyond its limits
 
     @property
@@ -122,6 +123,8 @@ class StandStill:
             self._beyond = self._beyond_limits()
         if source.fast:
             self._motion_at = max(self._motion_at, sample.received)
+        if source.evident:
+            self._evident_at = max(self._evident_at, sample.received)
         for channel, away in source.travel(self._marks.get(name, {})).items():
             if channel == PLACE:
                 self._way = max(self._way, away)
@@ -217,11 +220,11 @@ class StandStill:
         """What must be seen after a stop that was commanded at `begun`.
 
         A strongest stop that acts at once (`emg_stop_at_once`) needs no dead time if its effect can be seen: the
-        machine moves, or no command is on its way. Else a machine that ignores it would be believed to stand.
+        machine clearly moves, or no command is on its way. Else a machine that ignores it would be believed to stand.
         If an expected motion was never seen, the sources are doubtful (they may replay a record): then no sample counts
         before every motion must have ended, also that of a machine which goes on for a while.
         """
-        visible = self._motion_at > begun - WORST or begun - self._quiet_since > self.dead_time
+        visible = self._evident_at > begun - WORST or begun - self._quiet_since > self.dead_time
         immediate = strongest and self._facts.stops_at_once and visible
         wait, coming = (0.0, {}) if immediate else (self.dead_time, expected.to_come)
         expected = Expected(expected.since, {name: way for name, way in coming.items() if way > SEEN})

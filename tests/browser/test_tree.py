@@ -97,3 +97,7 @@ def test_a_node_is_searched_for_and_durations_are_shown(page: Page, address: str
     expect(sought).to_have_class(re.compile("found"))
     expect(page.locator("#node_details")).to_contain_text("R0.20.7")
     expect(page.get_by_text("1 of 1")).to_be_visible()
+    page.goto(f"{address}/#history/r-1/3")
+    expect(page.locator("#past_title")).to_be_visible()
+    page.get_by_role("button", name="Durations").click()
+    expect(leaf.locator(".node_mark")).to_have_text("3.0 s")  # until the cursor

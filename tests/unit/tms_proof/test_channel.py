@@ -4,7 +4,7 @@ from collections.abc import Iterable
 
 import pytest
 
-from tms_proof.channel import KEPT, WORST, Channel, Limits, distance
+from tms_proof.channel import BETWEEN, JITTER, KEPT, WORST, Channel, Limits, distance
 
 LIMIT = 0.25  # rad/s
 ALWAYS = float("-inf")
@@ -131,3 +131,19 @@ def test_samples_must_be_measured_and_received_over_the_whole_time(received: flo
     stands = stamped([(1.0, 1.0, 0.0), (received, measured, 0.0)])
     assert stands.stood_since(ALWAYS, 0.125)
     assert not stands.stood_since(ALWAYS, 0.25)
+
+
+@pytest.mark.parametrize(("more", "evident"), [(1e-6, True), (-1e-6, False)])
+def test_a_motion_is_evident_once_a_jump_back_to_its_begin_would_be_noticed(more: float, evident: bool) -> None:
+    speed, scale, resolution = 0.5, 2.0, 0.001
+    way = resolution + BETWEEN + JITTER * scale * speed + more
+    limits = Limits(LIMIT, resolution=resolution, scale=scale)
+    began = [(0.0, 0.0, 0.0), (0.1, 0.0, 0.0)]
+    assert told(limits, [*began, (0.2, way / 2, speed), (0.3, way, -speed)]).evident is evident
+    assert told(limits, [*began, (0.2, way, speed), (0.3, way, 0.0)]).evident is False, "it is over"
+    assert told(limits, [(0.0, 0.0, speed), (0.1, way, speed)]).evident is evident, "it began before"
+
+
+def test_what_tells_no_place_shows_no_evident_motion() -> None:
+    assert not told(Limits(LIMIT), []).evident
+    assert not told(Limits(LIMIT), [(0.0, None, 0.0), (0.1, None, 2.0)]).evident

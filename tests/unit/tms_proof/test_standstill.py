@@ -330,6 +330,16 @@ def test_a_stop_that_acts_at_once_waits_where_nothing_was_seen_to_move() -> None
     assert stood_after(reporter, standing(reporter), reporter.now, strongest=True) > DEAD
 
 
+def test_a_stop_that_acts_at_once_waits_where_a_motion_had_hardly_begun() -> None:
+    """A machine that goes on, and replays its record from before it moved: nobody would notice the jump back."""
+    reporter = Reporter(watch(immediate=True))
+    reporter.run(1.0, 0.0)
+    reporter.watch.commanded(reporter.now)
+    reporter.run(PERIOD, 0.2)
+    reporter.angle = 0.0
+    assert stood_after(reporter, standing(reporter), reporter.now, strongest=True) > DEAD
+
+
 def test_a_motion_that_was_never_seen_makes_the_proof_wait() -> None:
     """A replayed record stands, whatever the machine does: it may go on, and brake then."""
     reporter = Reporter(watch())

@@ -11,6 +11,7 @@ import { clock } from "../texts";
 import { Attempts } from "../tree/attempts";
 import { TreeFlow } from "../tree/flow";
 import type { TreeNode } from "../tree/shape";
+import { spentIn } from "../tree/spent";
 import { Cursor } from "./cursor";
 import { Events, textOf } from "./events";
 import { LaneView } from "./lane_view";
@@ -79,8 +80,11 @@ function Line({ id, run, seconds, journal, live }: Props & { journal: Journal; l
 function PastTree({ journal, time }: { journal: Journal; time: number }) {
   const count = countAt(journal, time);
   const moment = momentAfter(journal, count);
+  const [shown, setShown] = useState(false);
+  const spent = useMemo(() => (shown ? spentIn(journal, count, time) : null), [shown, journal, count, time]);
   const facts = (node: TreeNode) => <Attempts journal={journal} count={count} now={time} node={node} />;
-  return journal.tree && <TreeFlow tree={journal.tree} {...moment} facts={facts} />;
+  const timing = { shown, spent, onShow: setShown };
+  return journal.tree && <TreeFlow tree={journal.tree} {...moment} facts={facts} timing={timing} />;
 }
 
 /** The further facts of the run that the scheduler has recorded. */
