@@ -100,4 +100,6 @@ def test_a_node_is_searched_for_and_durations_are_shown(page: Page, address: str
     page.goto(f"{address}/#history/r-1/3")
     expect(page.locator("#past_title")).to_be_visible()
     page.get_by_role("button", name="Durations").click()
+    search.fill("r0.3.2")
+    search.press("Enter")
     expect(leaf.locator(".node_mark")).to_have_text("3.0 s")  # until the cursor
