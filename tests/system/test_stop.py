@@ -19,7 +19,7 @@ from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from conftest import CLI, Mesh, wait_until
 from tms_decision.owner import Owner
-from tms_decision.reasons import HeldByAnother, MachineLatched, NoPermit, OldRun
+from tms_decision.reasons import HeldByAnother, MachineLatched, NoPermit, OldRun, SoftwareStop
 from tms_reason import wire
 from tms_ros.goals import Outcome
 from tms_ros.node import Ros
@@ -110,6 +110,24 @@ def test_rearming_takes_two_steps_and_is_refused_while_the_stop_is_pressed(mesh:
         node.node.destroy_subscription(received)
     rearm(mesh)
     assert "nothing to do" in mesh.tms("rearm", "zx200", "--yes", expect=1).stderr
+
+
+def test_a_press_outlives_a_frozen_gateway_and_the_host_agent(mesh: Mesh, node: Ros) -> None:
+    gateway, host = (processes(mesh)[name]["pid"] for name in ("zx200:rc", "tms:host"))
+    button, note = node.publisher(Bool, "/emergency_signal"), mesh.state / "rc" / "zx200.pressed"
+    os.kill(gateway, signal.SIGSTOP)
+    timer = node.every(0.05, lambda: button.publish(Bool(data=True)))
+    try:
+        wait_until(note.exists, 20, "the press is on the disk")
+    finally:
+        node.node.destroy_timer(timer)
+        for pid in (gateway, host):
+            os.kill(pid, signal.SIGKILL)
+    button.publish(Bool(data=False))
+    mesh.wait_ready()
+    latched = wire.known(ask_to_move(node).result.error_string).find(MachineLatched)
+    assert latched is not None and latched.cause.find(SoftwareStop) is not None
+    rearm(mesh)
 
 
 def test_goals_of_an_abandoned_run_are_refused(mesh: Mesh, node: Ros) -> None:
