@@ -208,12 +208,17 @@ class Law:
         way: Array = stop + HEED * forward.top + slower
         return way
 
+    @property
+    def blind(self) -> float:
+        """How long the tracks go on unseen and uncommanded after the newest pose came [s]."""
+        return DELAY + BEAT + (0.0 if self.tracks is None else self.tracks.dead_time)
+
     def _reach(self, motion: Motion) -> Reach:
         if self.tracks is None:
             return Reach(0.0, 0.0, 0.0, 0.0, 0.0, motion.off)
         c, s = math.cos(motion.yaw), math.sin(motion.yaw)
         forward, aside = c * motion.vx + s * motion.vy, c * motion.vy - s * motion.vx
-        blind = motion.age + DELAY + BEAT + self.tracks.dead_time
+        blind = motion.age + self.blind
         factor = self.tracks.factor
         back, ahead = ends(self.tracks.forward, forward, blind, factor)
         right, left = ends(self.tracks.turning, motion.turning, blind, factor)

@@ -2,10 +2,14 @@
 
 import itertools
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
 
 import shapely
 
 from tms_areas.areas import Area, Point
+from tms_areas.body import Body
+from tms_areas.fix import WINDOW, Seen
+from tms_areas.law import Law
 from tms_areas.reach import Covered
 from tms_areas.reasons import EntersArea, NoWay
 from tms_reason.reason import Reason
@@ -14,6 +18,30 @@ from tms_reason.reason import Reason
 def touched(covered: Covered, areas: Iterable[Area]) -> frozenset[str]:
     """The areas in which a part of a machine may be."""
     return frozenset(area.id for area in areas if covered.touches(area))
+
+
+@dataclass
+class Presence:
+    """Where a machine is among areas, and where it may still come to be, whatever it is told now."""
+
+    inside: frozenset[str] = frozenset()  # where it is, or was last
+    near: frozenset[str] = frozenset()  # where it is, or may come until it stands
+    drove: float = float("-inf")  # monotonic [s], when a goal last drove it
+
+    def look(self, law: Law, body: Body, seen: Seen, areas: Iterable[Area], drives: bool, now: float) -> None:
+        """Where it is by one look; `drives`: a goal does.
+
+        A goal that is over may have told the tracks what they have not begun yet, so a machine that is seen to stand
+        is taken to only when that would have shown.
+        """
+        if drives:
+            self.drove = now
+        if (motion := seen.motion) is None:
+            return
+        if seen.unsure is None:
+            self.inside = touched(law.now(body, motion), areas)
+        stands = motion.rests and now - self.drove > law.blind + WINDOW
+        self.near = self.inside | (frozenset() if stands else touched(law.until_it_stands(body, motion), areas))
 
 
 def straight(areas: Iterable[Area], points: Sequence[Point], around: float) -> frozenset[str]:

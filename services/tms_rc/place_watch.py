@@ -14,7 +14,7 @@ from tms_areas.areas import Area, AreaSet
 from tms_areas.fix import Seen
 from tms_areas.guard import Guard
 from tms_areas.reach import Place as Pose
-from tms_areas.release import corners_of, needed, straight, touched
+from tms_areas.release import Presence, corners_of, needed, straight
 from tms_config.clock import monotonic, unix_ns
 from tms_machine.asking import ask
 from tms_places.keeper import Leases
@@ -35,6 +35,7 @@ class PlaceWatch:
     def __init__(self, app: App) -> None:
         self._app, self._own, self._lock = app, OwnLeases(app.machine), threading.Lock()
         self._areas: tuple[Area, ...] = ()
+        self._presence = Presence()  # of the thread that looks
         self._inside: frozenset[str] = frozenset()
         self._sure, self._due, self._silent = False, 0.0, False
         app.ros.subscribe(Places, "/tms/places", self._heard, latched=True)
@@ -59,25 +60,23 @@ class PlaceWatch:
 
         Geometry is done outside of the lock, for which the executor thread may wait.
         """
-        areas, motion, sure = self._areas, seen.motion, seen.unsure is None
+        areas, there = self._areas, self._presence
         if not areas:
             return None
-        inside, body = self._inside, guard.body(joints)
-        if motion is not None and sure:
-            inside = touched(guard.law.now(body, motion), areas)
-        lost = self._seen_inside(inside, sure, drives) - self._own.evacuates
-        if not lost or not drives or motion is None:
+        there.look(guard.law, guard.body(joints), seen, areas, drives, monotonic())
+        lost = self._seen_there(seen.unsure is None, drives) - self._own.evacuates
+        if not lost & there.near or not drives or seen.motion is None:
             return None
-        there = touched(guard.law.until_it_stands(body, motion), [one for one in areas if one.id in lost])
-        return LeaseOver(self._app.machine, min(there)) if there else None
+        return LeaseOver(self._app.machine, min(lost & there.near))
 
-    def _seen_inside(self, inside: frozenset[str], sure: bool, drives: bool) -> frozenset[str]:
+    def _seen_there(self, sure: bool, drives: bool) -> frozenset[str]:
         """Note where the machine is, and give back what nobody wants; the places whose lease is over."""
+        inside = self._presence.inside
         with self._lock:
-            before = (self._inside, self._sure, self._own.open)
+            before = (self._inside, self._sure, self._own.using)
             self._inside, self._sure = inside, sure
-            self._own.give_back(inside, sure, drives)
-            if before != (inside, sure, self._own.open):
+            self._own.give_back(self._presence.near, sure, drives)
+            if before != (inside, sure, self._own.using):
                 self._due = 0.0
             return self._own.lost(monotonic())
 
@@ -145,5 +144,5 @@ class PlaceWatch:
         told = Leases(frozenset(answer.held), frozenset(answer.leaving), frozenset(answer.revoked), answer.revision)
         with self._lock:
             self._own.answered(report.number, told, self._inside, answer.lease)
-            if self._own.open != report.using:
+            if self._own.using != report.using:
                 self._due = 0.0  # the keeper waits for the word that the gateway knows

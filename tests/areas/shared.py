@@ -21,7 +21,7 @@ from tms_areas.braking import Axis, Tracks
 from tms_areas.fix import Fix, Seen
 from tms_areas.guard import Guard
 from tms_areas.law import Law, Place
-from tms_areas.release import needed, touched
+from tms_areas.release import Presence, needed
 from tms_places.claims import Book, of_document, to_document
 from tms_places.keeper import Keeper, Leases
 from tms_places.leases import PERIOD, OwnLeases
@@ -133,7 +133,7 @@ class Machine:
     going: bool = False
     latched: bool = False
     dead_until: float = 0.0
-    inside: frozenset[str] = frozenset()
+    there: Presence = field(default_factory=Presence)
     seen: Seen = field(default_factory=lambda: Seen(None, None))
     due: float = 0.0
     speed: float = 0.0
@@ -151,7 +151,7 @@ class Machine:
         now = self.world.now
         self.due = now + PERIOD
         names = [one.id for one in self.areas.of("release")]
-        told = self.own.report(int(now * 1e9), names, self.inside, self.seen.unsure is None, now)
+        told = self.own.report(int(now * 1e9), names, self.there.inside, self.seen.unsure is None, now)
         own = self.own
 
         def arrive() -> None:
@@ -163,9 +163,9 @@ class Machine:
         self.world.send(arrive)
 
     def answered(self, own: OwnLeases, number: int, answer: Leases) -> None:
-        before = own.open
-        own.answered(number, answer, self.inside)
-        if own is self.own and own.open != before:
+        before = own.using
+        own.answered(number, answer, self.there.inside)
+        if own is self.own and own.using != before:
             self.due = min(self.due, self.world.now + 0.3)
 
     def look(self) -> None:
@@ -174,19 +174,15 @@ class Machine:
             self.fix.heard(at, *pose)
         self.fix.odometry(self.plant.v, self.plant.w)
         self.seen = self.fix.look(now)
-        body, motion = Outline(self.corners).body(()), self.seen.motion
-        guard = self.guard(self.own.open)
-        if motion is not None and self.seen.unsure is None:
-            self.inside = touched(guard.law.now(body, motion), self.areas.of("release"))
-        before = self.own.open
-        self.own.give_back(self.inside, self.seen.unsure is None, self.going)
-        if self.own.open != before:
+        guard, body = self.guard(self.own.open), Outline(self.corners).body(())
+        self.there.look(guard.law, body, self.seen, self.areas.of("release"), self.going, now)
+        before = self.own.using
+        self.own.give_back(self.there.near, self.seen.unsure is None, self.going)
+        if self.own.using != before:
             guard, self.due = self.guard(self.own.open), now
-        if self.going and motion is not None:
+        if self.going and self.seen.motion is not None:
             verdict = guard.look(self.seen, {}, tracks=True)
-            lost = self.own.lost(now) - self.own.evacuates
-            reach = guard.law.until_it_stands(body, motion)
-            over = touched(reach, [one for one in self.areas.of("release") if one.id in lost])
+            over = (self.own.lost(now) - self.own.evacuates) & self.there.near
             if verdict.stop is not None:
                 self.latched, self.result.stops = True, self.result.stops + 1
                 self.world.after(6.0, self.rearm)
@@ -203,7 +199,7 @@ class Machine:
         """The gateway is killed: its host agent stops the machine, and a new one knows nothing."""
         self.dead_until, self.going = self.world.now + self.world.random.uniform(1.0, 6.0), False
         self.own, self.fix = OwnLeases(self.name, self.own.evacuates), Fix(TRACKS.turning.top)
-        self.seen, self.inside, self.due = Seen(None, None), frozenset(), 0.0
+        self.seen, self.there, self.due = Seen(None, None), Presence(), 0.0
 
     # the run
 
@@ -217,8 +213,8 @@ class Machine:
             self.give_up()
             return
         way: list[Place] = [(self.goal, self.plant.y, 0.0)]
-        usable = self.own.open - (self.own.lost(now) - self.inside)
-        if self.inside & self.own.lost(now):
+        usable = self.own.open - (self.own.lost(now) - self.there.inside)
+        if self.there.inside & self.own.lost(now):
             return
         if not self.asked and not self.wants:
             names, why = needed(

@@ -39,8 +39,8 @@ def test_a_place_is_given_back_outside_standing_and_sure_of_it() -> None:
     own.give_back(NONE, sure=True, drives=False)
     assert own.open == ROAD  # it is still wanted
     told(own, 2.0, Leases(leaving=ROAD), inside=ROAD)
-    for inside, sure, drives in ((ROAD, True, False), (NONE, False, False), (NONE, True, True)):
-        own.give_back(inside, sure, drives)
+    for near, sure, drives in ((ROAD, True, False), (NONE, False, False), (NONE, True, True)):
+        own.give_back(near, sure, drives)
         assert own.open == ROAD
     assert own.held(2.0) == NONE
     own.give_back(NONE, sure=True, drives=False)
@@ -72,3 +72,34 @@ def test_a_place_that_the_keeper_does_not_know_of_is_closed() -> None:
     told(own, 1.0, Leases(held=ROAD))
     told(own, 2.0, Leases())
     assert own.open == NONE
+
+
+def test_what_is_lost_is_in_use_until_the_machine_cannot_come_there_any_more() -> None:
+    own = OwnLeases("a")
+    told(own, 1.0, Leases(held=ROAD))
+    for answer in (Leases(revoked=ROAD), Leases()):
+        told(own, 2.0, answer)
+        assert own.open == NONE and own.using == ROAD, "nobody has looked yet where it is"
+        own.give_back(ROAD, sure=True, drives=True)
+        own.give_back(NONE, sure=False, drives=False)
+        assert own.open == NONE and own.report(3, ROAD, NONE, True, 3.0).using == ROAD
+        own.give_back(NONE, sure=True, drives=True)
+        assert own.report(4, ROAD, NONE, True, 4.0).using == NONE, "it is closed: it drives past it"
+        told(own, 5.0, Leases(held=ROAD))
+        assert own.open == ROAD
+
+
+def test_a_machine_that_a_new_gateway_finds_on_its_way_into_a_place_keeps_it_from_others() -> None:
+    own = OwnLeases("a")
+    own.give_back(ROAD, sure=True, drives=False)
+    assert own.open == NONE and own.report(1, ROAD, NONE, True, 1.0).using == ROAD
+
+
+def test_what_is_closing_is_not_confirmed_before_it_is_open() -> None:
+    own = OwnLeases("a")
+    own.give_back(ROAD, sure=True, drives=False)
+    own.heard(ROAD, NONE, 7)
+    report = own.report(1, ROAD, NONE, True, 1.0)
+    assert (report.using, report.revision) == (ROAD, 0)
+    own.answered(report.number, Leases(held=ROAD, revision=7), NONE)
+    assert own.held(1.0) == ROAD and own.report(2, ROAD, NONE, True, 1.0).revision == 7

@@ -95,7 +95,7 @@ def test_it_reports_where_it_is_and_what_it_uses(gateway: Gateway) -> None:
     assert (sorted(told.places), list(told.inside), told.sure) == (["pit", "road"], ["pit", "road"], True)
     gateway.look(11.0, sure=False)
     told = gateway.report(held=["road"])
-    assert (list(told.in_use), list(told.inside), told.sure) == (["road"], ["pit", "road"], False)
+    assert (list(told.in_use), list(told.inside), told.sure) == (["pit", "road"], ["pit", "road"], False)
 
 
 def test_it_reports_at_once_what_the_keeper_waits_for(gateway: Gateway) -> None:
@@ -157,6 +157,18 @@ def test_a_revoked_place_is_closed(gateway: Gateway) -> None:
     assert gateway.watch.open == frozenset()
     verdict = gateway.guard(gateway.watch.open).look(Seen(None, Motion(7.0, 0.0, 0.0, 2.0)), {}, tracks=True)
     assert isinstance(verdict.stop, EntersArea)
+
+
+def test_a_place_that_is_lost_on_the_way_in_is_in_use_until_the_machine_stands(gateway: Gateway) -> None:
+    gateway.report(held=["road"])
+    for losing in ({"revoked": ["road"]}, {"leaving": ["road"]}):
+        gateway.report(**losing)
+        for drives in (True, False):
+            gateway.look(5.0, drives=drives, speed=2.0)
+            assert list(gateway.report(**losing).in_use) == ["road"]
+        gateway.now += 2.0
+        gateway.look(6.0)
+        assert list(gateway.report(held=["road"]).in_use) == []
 
 
 def test_out_of_one_that_evacuates_it_may_drive_but_not_to_stay(monkeypatch: pytest.MonkeyPatch) -> None:
