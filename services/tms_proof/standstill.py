@@ -19,6 +19,7 @@ PLACE, HEADING, TURNING = "place", "heading", "turning"
 HARD = 0.2  # rad; a joint that far beyond its limit is impossible: its sensor, or its name, is wrong
 INFINITE = float("inf")
 SEEN, SHARE = 0.003, 0.5  # a commanded motion above so many rad must be seen, and this share of it after the stop
+SAME_TIME = 1e-6  # s
 OBEYS = 3.5  # s that a machine may go on after the command to stop, unless it was seen to obey
 
 
@@ -95,6 +96,7 @@ class StandStill:
         self._quiet_since = -INFINITE  # when our last goal ended: its last commands may still be on their way
         self._motion_at = -INFINITE  # when a motion was last seen ...
         self._evident_at = -INFINITE  # ... that no replayed record could hide
+        self._doubted_at = -INFINITE  # when a source could not be believed although a stop was to be proven
         self._beyond: Reason | None = None  # the joint that the last message shows beyond its limits
 
     @property
@@ -221,9 +223,11 @@ class StandStill:
 
         A strongest stop that acts at once (`emg_stop_at_once`) needs no dead time if its effect can be seen: the
         machine clearly moves, or no command is on its way. Else a machine that ignores it would be believed to stand.
-        If an expected motion was never seen, the sources are doubtful (they may replay a record): then no sample counts
-        before every motion must have ended, also that of a machine which goes on for a while.
+        If an expected motion was never seen, or a source could not be believed for a while, the sources are doubtful
+        (they may replay a record): then no sample counts before every motion must have ended, also that of a machine
+        which goes on for a while.
         """
+        self._doubts(begun)
         visible = self._evident_at > begun - WORST or begun - self._quiet_since > self.dead_time
         immediate = strongest and self._facts.stops_at_once and visible
         wait, coming = (0.0, {}) if immediate else (self.dead_time, expected.to_come)
@@ -233,7 +237,7 @@ class StandStill:
 
     def proven(self, proof: Proof, now: float) -> bool:
         """Whether all that the proof asks for was seen."""
-        if self.trouble(now) is not None:
+        if self._doubts(now):
             return False
         return self._stands(max(self._start(proof), self._surprised() + self.settles), now)
 
@@ -244,9 +248,17 @@ class StandStill:
 
     def _start(self, proof: Proof) -> float:
         since, angles = proof.expected.since, self._angles
-        seen = since is None or self._motion_at > since
+        seen = self._doubted_at < proof.unseen - self.settles - SAME_TIME
+        seen = seen and (since is None or self._motion_at > since)
         seen = seen and all(angles.get(name, 0.0) >= SHARE * way for name, way in proof.expected.to_come.items())
         return proof.start if seen else proof.unseen
+
+    def _doubts(self, now: float) -> bool:
+        """Whether a source cannot be believed now; that is remembered."""
+        if self.trouble(now) is None:
+            return False
+        self._doubted_at = now
+        return True
 
     def _surprised(self) -> float:
         return max((source.surprised for source in self.sources.values()), default=-INFINITE)

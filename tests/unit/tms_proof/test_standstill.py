@@ -340,6 +340,29 @@ def test_a_stop_that_acts_at_once_waits_where_a_motion_had_hardly_begun() -> Non
     assert stood_after(reporter, standing(reporter), reporter.now, strongest=True) > DEAD
 
 
+@pytest.mark.parametrize("strongest", [False, True])
+@pytest.mark.parametrize("before", [0.0, 0.4], ids=["from its begin on", "for a while before"])
+def test_sources_that_could_not_be_believed_meanwhile_make_the_proof_wait(strongest: bool, before: float) -> None:
+    """Its stamps stand, and then it replays its record from before the motion, while it goes on."""
+    reporter = Reporter(watch(immediate=strongest))
+    reporter.run(1.0, 0.3)
+    stamp = reporter.now
+    reporter.watch.commanded(reporter.now)
+
+    def same_stamp(seconds: float) -> None:
+        for _ in range(round(seconds / PERIOD)):
+            reporter.now += PERIOD
+            reporter.publish_now(reporter.angle, 0.3, stamp)
+
+    same_stamp(before)
+    begun, left = reporter.now, [same_stamp] * round(1.0 / PERIOD)
+    reporter.angle = 0.0
+    waited = stood_after(
+        reporter, lambda: left.pop()(PERIOD) if left else standing(reporter)(), begun, strongest=strongest
+    )
+    assert COASTS + reporter.watch.dead_time + reporter.watch.braking < waited < 8.0
+
+
 def test_a_motion_that_was_never_seen_makes_the_proof_wait() -> None:
     """A replayed record stands, whatever the machine does: it may go on, and brake then."""
     reporter = Reporter(watch())
