@@ -5,7 +5,7 @@ import pytest
 from areas.shared import run
 
 SEEDS = range(5)
-ROLLING = (787386612, 787387034)  # a place is lost on the way in: by the end of a run, by a person
+ROLLING = (787386612, 787387034)  # a place is lost on the way in: nobody wants it and its lease ends, or by a person
 
 
 @pytest.mark.parametrize("seed", (*SEEDS, *ROLLING))
