@@ -227,7 +227,8 @@ class StandStill:
         (they may replay a record): then no sample counts before every motion must have ended, also that of a machine
         which goes on for a while.
         """
-        self._doubts(begun)
+        if self.trouble(begun) is not None:
+            self._doubted_at = begun
         visible = self._evident_at > begun - WORST or begun - self._quiet_since > self.dead_time
         immediate = strongest and self._facts.stops_at_once and visible
         wait, coming = (0.0, {}) if immediate else (self.dead_time, expected.to_come)
@@ -237,7 +238,8 @@ class StandStill:
 
     def proven(self, proof: Proof, now: float) -> bool:
         """Whether all that the proof asks for was seen."""
-        if self._doubts(now):
+        if self.trouble(now) is not None:
+            self._doubted_at = now
             return False
         return self._stands(max(self._start(proof), self._surprised() + self.settles), now)
 
@@ -252,13 +254,6 @@ class StandStill:
         seen = seen and (since is None or self._motion_at > since)
         seen = seen and all(angles.get(name, 0.0) >= SHARE * way for name, way in proof.expected.to_come.items())
         return proof.start if seen else proof.unseen
-
-    def _doubts(self, now: float) -> bool:
-        """Whether a source cannot be believed now; that is remembered."""
-        if self.trouble(now) is None:
-            return False
-        self._doubted_at = now
-        return True
 
     def _surprised(self) -> float:
         return max((source.surprised for source in self.sources.values()), default=-INFINITE)

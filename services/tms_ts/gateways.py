@@ -52,6 +52,7 @@ class Gateways:
         self._controls: dict[str, Controls] = {}
         self._permits: dict[str, Permit] = {}
         self._holders: dict[str, Holder] = {}
+        self._pressed: frozenset[str] = frozenset()  # machines whose latch was not shown since the button was pressed
         for machine in app.site.file.machines:
             self._attend(machine)
         app.ros.subscribe(Bool, "/emergency_signal", self._signal, depth=SIGNALS)
@@ -135,8 +136,14 @@ class Gateways:
         state = self._states.get(machine)
         return wire.of(state.latch) if state is not None else None
 
+    def missed_press(self, machine: str) -> bool:
+        """Whether its gateway has shown no latch since the stop button was pressed: it may have died of that moment."""
+        return machine in self._pressed
+
     def _state(self, machine: str, state: MachineState) -> None:
         self._states[machine] = state
+        if state.latch:
+            self._pressed -= {machine}
         holder = self._holders.get(machine)
         if holder is not None and state.latch:
             holder.stopped(machine, wire.known(state.latch))
@@ -150,6 +157,7 @@ class Gateways:
 
     def _signal(self, message: Bool) -> None:
         if message.data:
+            self._pressed = frozenset(self._gateways)
             for machine, holder in list(self._holders.items()):
                 holder.stopped(machine, SoftwareStop())
 

@@ -44,6 +44,7 @@ class Scheduler(PermitProcess):
         self.told: dict[str, str] = {}  # outcomes that clients know
         self._receipts: list[Stop] = []
         self._states: dict[str, State] = {}
+        self.unlatched: set[str] = set()  # machines whose latch was not shown since the button was pressed
         self._gateways: dict[str, PermitLink] = {}
         self._last = 0
         self._ended: dict[int, float] = {}  # when runs have ended, by fencing number
@@ -53,7 +54,7 @@ class Scheduler(PermitProcess):
 
     def start(self) -> None:
         self.begin()
-        self.runs, self._states, self._receipts = {}, {}, []
+        self.runs, self._states, self._receipts, self.unlatched = {}, {}, [], set()
         self.hung_at = float("inf")
         self._gateways = {name: PermitLink("rc") for name in self.site.units}
         for name, unit in self.site.units.items():
@@ -217,6 +218,8 @@ class Scheduler(PermitProcess):
 
     def _state(self, name: str, state: State) -> None:
         self._states[name] = state
+        if state.latch is not None:
+            self.unlatched.discard(name)
         run = next((run for run in self.runs.values() if name in run.task.machines() and run.core.held), None)
         if run is not None and state.latch is not None:
             run.stopped(name, state.latch)
@@ -226,6 +229,7 @@ class Scheduler(PermitProcess):
 
     def pressed(self) -> None:
         """The stop button is pressed."""
+        self.unlatched = set(self.site.units)
         for run in [run for run in self.runs.values() if run.core.held]:
             run.stopped(run.units[0].name, SoftwareStop())
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 
-from simulation import host
+from simulation import execution, host
 from simulation.disk import Notes
 from simulation.plan import Planned, Press, Trapped, machines, plan
 from simulation.schedule import Schedule, shorter
@@ -82,9 +82,17 @@ def test_a_press_that_a_second_gateway_took_along_is_handed_on(monkeypatch: pyte
 
 def test_a_press_outlives_a_gateway_and_its_host_agent(monkeypatch: pytest.MonkeyPatch) -> None:
     """The gateway was killed before the disk had its latch, and the host agent before it could tell the next one."""
+    monkeypatch.setattr(execution, "_missed_press", execution._end_of_run)
     assert Schedule(20280771).run().violation == ""
     monkeypatch.setattr(Notes, "press", lambda *_: None)
     assert "before a re-arm" in Schedule(20280771).run().violation
+
+
+def test_a_press_outlives_a_gateway_while_the_host_agent_is_away(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The scheduler has heard it, and sees no latch: the stop at the end of its run is no orderly one."""
+    assert Schedule(50033358).run().violation == ""
+    monkeypatch.setattr(execution, "_missed_press", execution._end_of_run)
+    assert "before a re-arm" in Schedule(50033358).run().violation
 
 
 def test_a_press_is_not_forgotten_when_its_gateway_is_killed_before_the_disk_has_the_latch() -> None:

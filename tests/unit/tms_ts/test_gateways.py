@@ -1,10 +1,20 @@
-"""Which of the gateways' news belong to a run."""
+"""Which of the gateways' news belong to a run, and which presses of the stop button they have missed."""
+
+from collections.abc import Callable
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 from builtin_interfaces.msg import Time
-from tms_msg_rc.msg import StopReceipt
+from std_msgs.msg import Bool
+from tms_msg_rc.msg import MachineState, StopReceipt
+from tms_msg_rc.srv import StopMachine
 
-from tms_ts.gateways import Holder
+from tms_decision.reasons import Cancelled, SoftwareStop
+from tms_reason.wire import to_line
+from tms_ts import gateways
+from tms_ts.gateways import Gateways, Holder
+from tms_ts.machine_stops import MachineStops
 
 
 @pytest.mark.parametrize(
@@ -20,3 +30,45 @@ from tms_ts.gateways import Holder
 def test_a_run_hears_of_its_own_stops_only(run: int, at: int, concerns: bool) -> None:
     holder = Holder(7, (100, 0), lambda *_: None, lambda _: None, lambda: True)
     assert holder.concerns(StopReceipt(run=run, stamp=Time(sec=at, nanosec=1))) is concerns
+
+
+class FakeRos:
+    """Keeps who listens to a topic, and what is asked of gateways."""
+
+    def __init__(self) -> None:
+        self.heard: dict[str, Callable[[Any], None]] = {}
+        self.asked: list[StopMachine.Request] = []
+
+    def subscribe(self, _kind: Any, topic: str, hear: Callable[[Any], None], **_quality: Any) -> None:
+        self.heard[topic] = hear
+
+    def prepare(self, *_service: Any) -> None:
+        pass
+
+    def call(self, _kind: Any, _name: str, request: StopMachine.Request, *_limits: Any) -> StopMachine.Response:
+        self.asked.append(request)
+        return StopMachine.Response()
+
+
+def test_a_gateway_that_has_missed_a_press_is_asked_to_latch(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("Controls", "Permit", "RemotePermit"):
+        monkeypatch.setattr(gateways, name, lambda *_, **__: SimpleNamespace(alive=True))
+    site = SimpleNamespace(file=SimpleNamespace(machines=["zx200", "ic120"]), border=lambda _: None)
+    ros = FakeRos()
+    app: Any = SimpleNamespace(ros=ros, pulse=None, site=site)
+    known = Gateways(app, lambda _: None)
+    stops = MachineStops(ros, known, lambda *_: None)  # type: ignore[arg-type]
+    state = ros.heard["/zx200/rc/state"]
+
+    def asked(machine: str) -> tuple[bool, str]:
+        stops.stop(machine, Cancelled())
+        return ros.asked[-1].orderly, ros.asked[-1].cause
+
+    orderly, missed = (True, to_line(Cancelled())), (False, to_line(SoftwareStop()))
+    ros.heard["/emergency_signal"](Bool(data=False))
+    assert asked("zx200") == asked("ic120") == orderly
+    ros.heard["/emergency_signal"](Bool(data=True))
+    state(MachineState())
+    assert asked("zx200") == asked("ic120") == missed
+    state(MachineState(latch=to_line(SoftwareStop())))
+    assert asked("zx200") == orderly and asked("ic120") == missed
