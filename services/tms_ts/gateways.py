@@ -8,6 +8,7 @@ from tms_msg_rc.msg import MachineState, StopReceipt
 from tms_msg_rc.srv import StopMachine
 
 from tms_config.clock import monotonic, sleep
+from tms_decision.duty import NOTED
 from tms_decision.owner import Owner
 from tms_decision.permit_link import NOBODY
 from tms_decision.reasons import DrivenByHand, MachineLatched, ProcessAway, SoftwareStop
@@ -53,6 +54,7 @@ class Gateways:
         self._permits: dict[str, Permit] = {}
         self._holders: dict[str, Holder] = {}
         self._pressed: frozenset[str] = frozenset()  # machines whose latch was not shown since the button was pressed
+        self._pressed_at = float("-inf")
         for machine in app.site.file.machines:
             self._attend(machine)
         app.ros.subscribe(Bool, "/emergency_signal", self._signal, depth=SIGNALS)
@@ -157,7 +159,7 @@ class Gateways:
 
     def _signal(self, message: Bool) -> None:
         if message.data:
-            self._pressed = frozenset(self._gateways)
+            self._pressed, self._pressed_at = frozenset(self._gateways), monotonic()
             for machine, holder in list(self._holders.items()):
                 holder.stopped(machine, SoftwareStop())
 
@@ -165,6 +167,8 @@ class Gateways:
         """Stop the machine of a lost gateway at once, as the gateway would; its successor does the same, but later."""
         if gateway.alive or gateway.goal == NOBODY:
             return
+        if monotonic() - self._pressed_at < NOTED:  # the latch that it may have shown may not be on its disk
+            self._pressed |= {machine}
         self._controls[machine].zero()
         self._controls[machine].cancel_everything()
         self._app.log.warning("gateway_lost", machine=machine, action="cancelled its goals")

@@ -287,7 +287,8 @@ class GatewayProcess(PermitProcess):
     def _check_receipt(self, receipt: f.Receipt) -> None:
         plant, (since, until) = self.unit.machine.plant, self.unit.levers
         began = self.world.now - plant.turned < UNSEEN  # a person, just now
-        hidden = plant.fault.replay and since <= self.world.now < until  # a person, of whom its past does not tell
+        person = self.unit.driven or since <= self.world.now < until
+        hidden = plant.fault.replay and person  # its past does not tell of that person
         if receipt.confirmed and plant.moves() and not began and not hidden:
             raise Violation(f"confirmed and truly moving: {receipt.cause!r}")
         if not receipt.confirmed and self.core is not None and self.core.latch.cause is None:

@@ -12,6 +12,7 @@ from simulation.lease import FORGET, PermitProcess
 from simulation.relay import Relay
 from simulation.task import Task, some_task
 from simulation.world import Violation
+from tms_decision.duty import NOTED
 from tms_decision.gateway import effects as f
 from tms_decision.leaf.events import Key
 from tms_decision.owner import Owner
@@ -45,6 +46,7 @@ class Scheduler(PermitProcess):
         self._receipts: list[Stop] = []
         self._states: dict[str, State] = {}
         self.unlatched: set[str] = set()  # machines whose latch was not shown since the button was pressed
+        self.pressed_at = float("-inf")
         self._gateways: dict[str, PermitLink] = {}
         self._last = 0
         self._ended: dict[int, float] = {}  # when runs have ended, by fencing number
@@ -55,14 +57,14 @@ class Scheduler(PermitProcess):
     def start(self) -> None:
         self.begin()
         self.runs, self._states, self._receipts, self.unlatched = {}, {}, [], set()
-        self.hung_at = float("inf")
+        self.hung_at, self.pressed_at = float("inf"), float("-inf")
         self._gateways = {name: PermitLink("rc") for name in self.site.units}
         for name, unit in self.site.units.items():
             link = self._gateways[name]
             unit.permits["rc"].join(
                 f"ts{self.life}",
                 self.in_life(lambda goal, holder, link=link: link.heard(goal, holder, self.world.now)),
-                self.in_life(lambda alive, stale, link=link: link.reported(alive, stale, False, self.world.now)),
+                self.in_life(lambda alive, stale, name=name: self._reported(name, alive, stale)),
             )
             unit.hear_state("ts", self.in_life(lambda state, name=name: self._state(name, state)))
             unit.hears_receipts["ts"] = self.in_life(lambda receipt, name=name: self._receipt(name, receipt))
@@ -216,6 +218,12 @@ class Scheduler(PermitProcess):
 
     # what others tell
 
+    def _reported(self, name: str, alive: int, stale: int) -> None:
+        now = self.world.now
+        self._gateways[name].reported(alive, stale, False, now)
+        if alive == 0 and now - self.pressed_at < NOTED:  # the latch that it has shown may not be on its disk
+            self.unlatched.add(name)
+
     def _state(self, name: str, state: State) -> None:
         self._states[name] = state
         if state.latch is not None:
@@ -229,7 +237,7 @@ class Scheduler(PermitProcess):
 
     def pressed(self) -> None:
         """The stop button is pressed."""
-        self.unlatched = set(self.site.units)
+        self.unlatched, self.pressed_at = set(self.site.units), self.world.now
         for run in [run for run in self.runs.values() if run.core.held]:
             run.stopped(run.units[0].name, SoftwareStop())
 

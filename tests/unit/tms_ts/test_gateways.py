@@ -10,6 +10,8 @@ from std_msgs.msg import Bool
 from tms_msg_rc.msg import MachineState, StopReceipt
 from tms_msg_rc.srv import StopMachine
 
+from tms_config.clock import monotonic
+from tms_decision.duty import NOTED
 from tms_decision.reasons import Cancelled, SoftwareStop
 from tms_reason.wire import to_line
 from tms_ts import gateways
@@ -32,6 +34,9 @@ def test_a_run_hears_of_its_own_stops_only(run: int, at: int, concerns: bool) ->
     assert holder.concerns(StopReceipt(run=run, stamp=Time(sec=at, nanosec=1))) is concerns
 
 
+QUIET = SimpleNamespace(zero=lambda: None, cancel_everything=lambda: None, warning=lambda *_, **__: None)
+
+
 class FakeRos:
     """Keeps who listens to a topic, and what is asked of gateways."""
 
@@ -51,11 +56,18 @@ class FakeRos:
 
 
 def test_a_gateway_that_has_missed_a_press_is_asked_to_latch(monkeypatch: pytest.MonkeyPatch) -> None:
-    for name in ("Controls", "Permit", "RemotePermit"):
-        monkeypatch.setattr(gateways, name, lambda *_, **__: SimpleNamespace(alive=True))
+    changed: dict[str, Callable[[Any], None]] = {}
+
+    def made(_ros: Any, _pulse: Any, machine: str, _kind: str, told: Callable[[Any], None]) -> Any:
+        changed[machine] = told
+        return SimpleNamespace(alive=True)
+
+    monkeypatch.setattr(gateways, "RemotePermit", made)
+    for name in ("Controls", "Permit"):
+        monkeypatch.setattr(gateways, name, lambda *_, **__: QUIET)
     site = SimpleNamespace(file=SimpleNamespace(machines=["zx200", "ic120"]), border=lambda _: None)
     ros = FakeRos()
-    app: Any = SimpleNamespace(ros=ros, pulse=None, site=site)
+    app: Any = SimpleNamespace(ros=ros, pulse=None, site=site, log=QUIET)
     known = Gateways(app, lambda _: None)
     stops = MachineStops(ros, known, lambda *_: None)  # type: ignore[arg-type]
     state = ros.heard["/zx200/rc/state"]
@@ -72,3 +84,9 @@ def test_a_gateway_that_has_missed_a_press_is_asked_to_latch(monkeypatch: pytest
     assert asked("zx200") == asked("ic120") == missed
     state(MachineState(latch=to_line(SoftwareStop())))
     assert asked("zx200") == orderly and asked("ic120") == missed
+    changed["zx200"](SimpleNamespace(alive=False, goal=b"serves"))  # so soon that its disk may not have it
+    assert asked("zx200") == missed
+    monkeypatch.setattr(gateways, "monotonic", lambda: monotonic() + NOTED)
+    state(MachineState(latch=to_line(SoftwareStop())))
+    changed["zx200"](SimpleNamespace(alive=False, goal=b"serves"))
+    assert asked("zx200") == orderly
