@@ -147,4 +147,4 @@ class Process:
             self.up_at = self.world.now
             steps, self.waiting = self.waiting, []
             for step in steps:
-                step()
+                self.handle(step)  # one of them may be its end
