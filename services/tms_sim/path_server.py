@@ -42,6 +42,11 @@ def straight(begin: tuple[float, float], goal: PoseStamped) -> Path:
         _, _, one.pose.orientation.z, one.pose.orientation.w = about("z", yaw)
         path.poses.append(one)
     path.poses.append(PoseStamped(pose=goal.pose))
+    return in_map(path)
+
+
+def in_map(path: Path) -> Path:
+    """The same path, in the frame `map`."""
     for header in (path.header, *(pose.header for pose in path.poses)):
         header.frame_id = MAP
     return path

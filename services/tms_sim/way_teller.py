@@ -6,9 +6,9 @@ from geometry_msgs.msg import PoseStamped
 from nav_msgs.msg import Path
 
 from tms_machine.border import PLAN
-from tms_machine.frames import MAP
 from tms_ros.node import Ros
 from tms_sim.base import Base
+from tms_sim.path_server import in_map
 
 EVERY = 25  # ticks, a second
 
@@ -32,6 +32,4 @@ def along(places: list[tuple[float, float]]) -> Path:
     path = Path(poses=[PoseStamped() for _ in places])
     for pose, (x, y) in zip(path.poses, places, strict=True):
         pose.pose.position.x, pose.pose.position.y, pose.pose.orientation.w = x, y, 1.0
-    for header in (path.header, *(pose.header for pose in path.poses)):
-        header.frame_id = MAP
-    return path
+    return in_map(path)
