@@ -1,6 +1,7 @@
 """The planted defects of `catalogue/*.yaml`: a text of a file, what takes its place, and what goes wrong then."""
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import yaml
@@ -22,6 +23,7 @@ class Mutant:
     text: str  # which the file has once
     becomes: str
     wrong: str  # what goes wrong, in words
+    without: Sequence[str] = ()  # other defences against the same, which would hide it; see simulation.defences
 
     @property
     def package(self) -> str:
@@ -38,6 +40,11 @@ class Mutant:
         if found != 1:
             raise DoesNotApply(f"{self.name}: {self.file} has this text {found} times, not once: {self.text}")
         return source.replace(self.text, self.becomes)
+
+    @property
+    def sound(self) -> "Mutant":
+        """The code as it is, with the same defences put out."""
+        return replace(self, becomes=self.text)
 
 
 def mutants(folder: Path = FOLDER) -> list[Mutant]:

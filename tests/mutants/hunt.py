@@ -12,6 +12,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from areas.history import run
+from simulation.defences import put_out
 from simulation.schedule import Schedule
 
 LONGEST = 10  # s of CPU time of a schedule, which takes 0.03 s to 0.5 s: a defect may let it go on for ever
@@ -41,8 +42,10 @@ def _limit() -> None:
 
 
 if __name__ == "__main__":
-    package, seed, schedules = sys.argv[1:]
+    package, seed, schedules, *without = sys.argv[1:]
     spec = find_spec(package)
     if spec is None or spec.origin is None or not Path(spec.origin).is_relative_to(Path.cwd()):
         sys.exit(f"{package} is not the planted one")
+    for defence in without:
+        put_out(defence)
     hunt(package, int(seed), int(schedules))

@@ -6,7 +6,7 @@ import shutil
 import signal
 import subprocess
 import sys
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -41,7 +41,18 @@ def plant(mutant: Mutant, folder: Path, services: Path = SERVICES) -> None:
 
 
 def look_for(mutant: Mutant, seed: int, schedules: int) -> Verdict:
-    """Simulate until an invariant is violated."""
+    """Simulate until an invariant is violated by the defect, not by the lack of the defences that are put out."""
+    verdict, tried = simulate(mutant, seed, schedules), 0
+    while mutant.without and verdict.seed is not None and not simulate(mutant.sound, verdict.seed, 1).survived:
+        tried += verdict.tried
+        if tried == schedules:
+            return Verdict(mutant.name, tried)
+        verdict = simulate(mutant, seed + tried, schedules - tried)
+    return replace(verdict, tried=tried + verdict.tried)
+
+
+def simulate(mutant: Mutant, seed: int, schedules: int) -> Verdict:
+    """Schedules in an interpreter of their own, until one violates an invariant."""
     with TemporaryDirectory(prefix="mutant-") as name:
         folder = Path(name).resolve()
         plant(mutant, folder)
@@ -50,7 +61,7 @@ def look_for(mutant: Mutant, seed: int, schedules: int) -> Verdict:
             "PYTHONPATH": os.pathsep.join(map(str, (folder, TESTS, SERVICES))),
             "PYTHONHASHSEED": "0",
         }
-        command = [sys.executable, "-m", "mutants.hunt", mutant.package, str(seed), str(schedules)]
+        command = [sys.executable, "-m", "mutants.hunt", mutant.package, str(seed), str(schedules), *mutant.without]
         done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True)
     return read(mutant.name, seed, done)
 

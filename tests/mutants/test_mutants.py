@@ -16,7 +16,8 @@ from click.testing import CliRunner
 from mutants import hunt, run
 from mutants.catalogue import SERVICES, DoesNotApply, Mutant, mutants
 from mutants.ledger import Ledger
-from mutants.plant import HuntFailed, Verdict, look_for, plant, read
+from mutants.plant import HuntFailed, Verdict, look_for, plant, read, simulate
+from simulation.defences import WITHOUT
 
 AT_LEAST = 60
 LATCH = Mutant("a-defect", "tms_decision/latch.py", "self.closings += 1", "pass", "nobody counts")
@@ -33,6 +34,7 @@ def test_there_are_enough_with_names_and_words() -> None:
     every = mutants()
     assert len(every) >= AT_LEAST
     assert [name for name, count in Counter(one.name for one in every).items() if count > 1] == []
+    assert {name for one in every for name in one.without} == set(WITHOUT)
     assert [one.name for one in every if not re.fullmatch(r"[a-z0-9]+(-[a-z0-9]+)+", one.name) or not one.wrong] == []
 
 
@@ -58,6 +60,13 @@ def test_a_planted_defect_is_found_in_a_fresh_interpreter() -> None:
     verdict = look_for(named["a-goal-does-not-wait-for-its-note"], 1, 50)
     assert not verdict.survived and verdict.seed == verdict.tried
     assert "the note does not say whose it is" in verdict.violation
+
+
+def test_what_the_lack_of_other_defences_does_finds_no_mutant() -> None:
+    """Seed 20280771 needs one of the two: without both, the code itself loses a press."""
+    counts = Mutant(LATCH.name, LATCH.file, LATCH.text, "self.closings += 2", "nothing", tuple(WITHOUT))
+    assert not simulate(counts, 20280771, 1).survived
+    assert look_for(counts, 20280771, 1) == Verdict(counts.name, 1)
 
 
 def done(code: int, *lines: object, stderr: str = "") -> "subprocess.CompletedProcess[str]":

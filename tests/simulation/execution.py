@@ -273,6 +273,8 @@ class Execution:
     def _send(self, key: le.Key, call: int, owner: Owner) -> None:
         if key in self.done_before or key in self.scheduler.finished.get(self.run_id, ()):
             raise Violation(f"{self.run_id} repeats {key}, which had succeeded before the interruption")
+        if any(sent == key for _, _, _, sent in self.orders.values()):
+            raise Violation(f"{self.run_id} sends {key[0]} again, and the goal that it has sent is open")
         unit, scheduler = self.scheduler.site.units[key[1]], self.scheduler
         seconds = next(leaf.seconds for branch in self.task.branches for leaf in branch if leaf.key == key)
         order = Order(

@@ -5,8 +5,8 @@ from dataclasses import replace
 
 import pytest
 
-from simulation import execution, host
-from simulation.disk import Notes
+from simulation import host
+from simulation.defences import put_out
 from simulation.plan import Planned, Press, Trapped, machines, plan
 from simulation.schedule import Schedule, shorter
 from tms_decision.gateway import motion, stops
@@ -74,7 +74,7 @@ def test_what_a_stranger_has_cancelled_is_still_on_its_way(monkeypatch: pytest.M
 
 def test_a_press_that_a_second_gateway_took_along_is_handed_on(monkeypatch: pytest.MonkeyPatch) -> None:
     """It was there for a second, showed its latch, and ended; the right one had started meanwhile."""
-    monkeypatch.setattr(Notes, "press", lambda *_: None)  # which is enough by itself
+    put_out("the host agent's note of a press", monkeypatch.setattr)  # which is enough by itself
     assert Schedule(557426936).run().violation == ""
     monkeypatch.setattr(host, "alone", lambda gateway, now: gateway.alive(now))
     assert "before a re-arm" in Schedule(557426936).run().violation
@@ -82,16 +82,16 @@ def test_a_press_that_a_second_gateway_took_along_is_handed_on(monkeypatch: pyte
 
 def test_a_press_outlives_a_gateway_and_its_host_agent(monkeypatch: pytest.MonkeyPatch) -> None:
     """The gateway was killed before the disk had its latch, and the host agent before it could tell the next one."""
-    monkeypatch.setattr(execution, "_missed_press", execution._end_of_run)
+    put_out("the scheduler's stop after a press", monkeypatch.setattr)
     assert Schedule(20280771).run().violation == ""
-    monkeypatch.setattr(Notes, "press", lambda *_: None)
+    put_out("the host agent's note of a press", monkeypatch.setattr)
     assert "before a re-arm" in Schedule(20280771).run().violation
 
 
 def test_a_press_outlives_a_gateway_while_the_host_agent_is_away(monkeypatch: pytest.MonkeyPatch) -> None:
     """The scheduler has heard it, and sees no latch: the stop at the end of its run is no orderly one."""
     assert Schedule(50033358).run().violation == ""
-    monkeypatch.setattr(execution, "_missed_press", execution._end_of_run)
+    put_out("the scheduler's stop after a press", monkeypatch.setattr)
     assert "before a re-arm" in Schedule(50033358).run().violation
 
 

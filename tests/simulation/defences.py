@@ -1,0 +1,19 @@
+"""Defences that several parts have against one loss: a defect of one is looked for without the others."""
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from simulation import execution
+from simulation.disk import Notes
+
+Switch = Callable[[Any, str, Any], None]
+
+WITHOUT: Mapping[str, tuple[Any, str, Any]] = {
+    "the host agent's note of a press": (Notes, "press", lambda *_: None),
+    "the scheduler's stop after a press": (execution, "_missed_press", execution._end_of_run),
+}
+
+
+def put_out(name: str, switch: Switch = setattr) -> None:
+    """Put a defence out of action, in this process; `switch` may be that of a test, which ends with it."""
+    switch(*WITHOUT[name])
