@@ -16,6 +16,7 @@ from simulation.plan import (
     Press,
     Rearm,
     Stall,
+    Stranger,
     Take,
     machines,
     passive,
@@ -49,6 +50,7 @@ def _scenes(chance: random.Random, two_joints: bool) -> list[Scene]:
     lies = [Fault(coast=2.0, mute_joint=True)] if two_joints else [
         Fault(coast=2.0, frozen_stamp=True, zero_velocity=True), Fault(coast=2.0, second_publisher=True)]  # fmt: skip
     stop = chance.choice((press, Cancel()))
+    hides = Lie(Fault(coast=2.5, replay=True), 6.0)
     return [
         *([(0.0, Lie(one, 5.0)), (0.2 + later, stop)] for one in lies),  # stopped while it begins to lie
         [(0.0, Lie(chance.choice(lies), 6.0))],
@@ -57,5 +59,13 @@ def _scenes(chance: random.Random, two_joints: bool) -> list[Scene]:
         [(0.0, Take(4.0)), (0.5 + later, ForeignGoal(2.0))],  # a goal while a person drives ...
         [(0.0, Take(5.0)), (0.5, Kill(("rc",), (0.8,))), (3.5 + later, ForeignGoal(2.0))],  # ... and after a restart
         [(0.0, press), (2.5, Rearm()), (2.7 + later, press)],  # between the two steps of a re-arm
+        # A motion that nobody saw, which a stranger has cancelled, goes on while no run knows of it.
+        [
+            (0.0, Kill(("ts",), (7.0,))),
+            (2.5, hides),
+            (2.8 + later / 2, ForeignGoal(2.0)),
+            (3.5 + later / 2, Stranger()),
+            (4.5 + later, press),
+        ],
         [(0.0, press), (2.4, Stall(2.0, full=False)), (2.5, Rearm()), (2.6 + later, press)],  # while its note waits
     ]
