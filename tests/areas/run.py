@@ -17,7 +17,7 @@ from areas.shared import run as sharing
 NEEDLESS = 2.0  # percent at most of planned drives that end with a stop that nothing asked for; wild ones plan nothing
 JUDGED = 1000  # planned drives from which on that share is judged; of 68 three are 4.4 %, by chance one time in six
 T = TypeVar("T")
-WALKS = 10  # histories of machines for each history of people, which takes ten times as long
+WALKS = 10  # histories of machines for each history of people
 
 
 def judged(seed: int) -> Result:

@@ -7,7 +7,8 @@ import pytest
 
 from simulation import host
 from simulation.defences import put_out
-from simulation.plan import Planned, Press, Trapped, machines, plan
+from simulation.plan import Planned, Press, SecondGateway, Trapped, machines, plan
+from simulation.scenes import planned
 from simulation.schedule import Schedule, shorter
 from tms_decision.gateway import motion, stops
 from tms_proof.standstill import NOTHING, StandStill
@@ -75,9 +76,20 @@ def test_what_a_stranger_has_cancelled_is_still_on_its_way(monkeypatch: pytest.M
 def test_a_press_that_a_second_gateway_took_along_is_handed_on(monkeypatch: pytest.MonkeyPatch) -> None:
     """It was there for a second, showed its latch, and ended; the right one had started meanwhile."""
     put_out("the host agent's note of a press", monkeypatch.setattr)  # which is enough by itself
-    assert Schedule(557426936).run().violation == ""
+    kept = [one for one in planned(557426936) if not isinstance(one.act, SecondGateway)]
+    found = [*kept, Planned(12.566, 0, SecondGateway(1.45))]
+    assert Schedule(557426936, found).run().violation == ""
     monkeypatch.setattr(host, "alone", lambda gateway, now: gateway.alive(now))
-    assert "before a re-arm" in Schedule(557426936).run().violation
+    assert "before a re-arm" in Schedule(557426936, found).run().violation
+
+
+@pytest.mark.parametrize("seed", [31292, 16912990])
+def test_a_motion_that_a_new_gateway_has_not_seen_begin_is_waited_for(seed: int) -> None:
+    """A stranger cancelled it, and the machine went on and replayed its record of before, in which it stood.
+
+    The gateway was a second one, on a PC that knows nothing of the machine; or the goal came before the first sample.
+    """
+    assert Schedule(seed).run().violation == ""
 
 
 def test_a_press_outlives_a_gateway_and_its_host_agent(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -18,7 +18,7 @@ def ask(gateway: Gateway, now: float, asked: GoalAsked) -> None:
     if asked.wrong is not None:
         _refuse(gateway, asked, asked.wrong)
         return
-    goal = Goal(asked, now, gateway.watch.positions)
+    goal = Goal(asked, now)
     gateway.waiting.append(goal)
     admit(gateway, now)
 

@@ -37,7 +37,7 @@ class Goal:
 
     asked: GoalAsked
     since: float  # when its phase began
-    start: dict[str, float]  # rad, joints when it was asked for
+    start: dict[str, float] = field(default_factory=dict)  # rad, joints when it left for the machine
     phase: Phase = Phase.PERMIT
     cancelled: bool = False
     note: int = 0  # number of the note that it waits for

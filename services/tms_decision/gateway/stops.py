@@ -50,8 +50,8 @@ def stop(
     goal, over = (active, now) if active is not None else gateway.last
     if goal is not None and goal.stop is None and now - over < gateway.watch.settles:
         expected = _expected(gateway, goal, over, now)
-    elif not gateway.recovery.over and (gateway.recovery.holder or gateway.recovery.unproven):
-        expected = UNKNOWN  # of a motion that goes on, this gateway has not seen how it began
+    elif not gateway.recovery.over:  # a motion that goes on may have begun before this gateway
+        expected = UNKNOWN
     made = _begin(gateway, now, cause, latched, run or (owner.run if owner is not None else gateway.run or 0), expected)
     made.broken = broken
     if latched:

@@ -19,6 +19,7 @@ from tms_decision.reasons import (
     HeldByRun,
     MachineLatched,
     Nameless,
+    NoNote,
     NotBelieved,
     NotReady,
     NotSeen,
@@ -55,6 +56,15 @@ def test_a_machine_that_tells_nothing_is_waited_for_and_then_told() -> None:
     assert not rig.run(SERVER_LIMIT - 0.5).all(f.End)
     rig.run(1.0)
     assert rig.end.outcome == "ABORTED" and isinstance(rig.end.why, NotReady) and not rig.all(f.Send)
+
+
+def test_a_goal_that_was_asked_for_before_the_machine_was_heard_is_followed_from_where_it_is() -> None:
+    rig = Rig()
+    rig.ask(1)
+    assert not rig.gateway.watch.positions
+    rig.run(3.0)
+    follower = rig.gateway.active and rig.gateway.active.follower
+    assert rig.all(f.Send) and follower is not None and follower.should_have_moved(1.0)
 
 
 def test_a_machine_that_is_not_believed_gets_no_goal() -> None:
@@ -446,7 +456,9 @@ def test_a_machine_that_moves_while_a_receipt_waits_for_the_disk_is_stopped() ->
 
 
 @pytest.mark.parametrize("at_once", [False, True])
-@pytest.mark.parametrize("left", [e.Left(None, "run-1", 7), e.Left(Foreign("rain"), unproven=True)], ids=str)
+@pytest.mark.parametrize(
+    "left", [e.Left(None, "run-1", 7), e.Left(Foreign("rain"), unproven=True), e.Left(NoNote())], ids=str
+)
 def test_a_press_before_the_first_proof_does_not_believe_a_record_of_the_time_before(
     left: e.Left, at_once: bool
 ) -> None:
