@@ -13,7 +13,7 @@ from playwright.sync_api import Page, expect
 from tms_config.clock import utc_now
 from tms_decision.reasons import SoftwareStop
 from tms_reason.errors import TmsError
-from tms_reason.reason import Reason
+from tms_reason.reason import Foreign, Reason
 from tms_reason.remedies import REARM, RESUME
 from tms_ts.bt import check, palette
 from tms_ur.models import Event, Host, Place, Process, Question
@@ -227,6 +227,21 @@ def test_a_stopped_process_is_a_fault_only_where_it_should_run(page: Page, addre
     expect(page.locator("#log_text")).to_be_in_viewport()
     page.locator("#log_filter").fill("ended")
     expect(page.locator("#log_text")).to_be_empty()
+
+
+def test_long_lines_of_a_log_leave_the_buttons_of_its_process_on_the_page(
+    page: Page, address: str, yard: Yard
+) -> None:
+    details = Foreign("pid 16797, uptime 0:01:16")  # what supervisord says of each process that runs
+    found = Process(name="tms:ts", state="RUNNING", pid=16797, uptime=78.0, detail=view(details))
+    yard.board.put_host(Host(name="site-pc-1", processes=[found]))
+    page.route("**/api/processes/*/log*", lambda route: route.fulfill(json={"text": "event=started " * 100}))
+    page.goto(f"{address}/#system/tms:ts")
+    expect(page.locator("#log_text")).to_contain_text("event=started")
+    expect(page.get_by_role("button", name="Restart tms:ts")).to_be_in_viewport(ratio=1.0)
+    row = page.locator("#list_processes tr").first
+    expect(row).not_to_contain_text("uptime 0:01:16")
+    assert row.evaluate("row => [...row.cells].every(cell => cell.offsetHeight < 70)")
 
 
 def test_the_history_of_a_record_is_a_plot(page: Page, address: str, yard: Yard) -> None:

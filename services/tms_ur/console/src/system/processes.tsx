@@ -42,7 +42,7 @@ export function Processes({ state, open, onOpen }: Props) {
             <Line row={row} running={state.runs.length} open={open === row.process.name} onOpen={onOpen} />
             {open === row.process.name && (
               <tr>
-                <td colSpan={HEADS}>
+                <td colSpan={HEADS} className="wide_lines">
                   <ProcessLog key={open} name={open} />
                 </td>
               </tr>
@@ -70,7 +70,7 @@ function Line({ row: { host, process }, running, open, onOpen }: LineProps) {
       <td>{host}</td>
       <td>
         <Badge state={shownState(process)} />
-        <Said reason={process.detail} done="logs" />
+        {process.state !== "RUNNING" && <Said reason={process.detail} done="logs" />}
       </td>
       <td>{process.state === "RUNNING" ? duration(process.uptime) : "-"}</td>
       <td>{process.pid ? `${process.cpu.toFixed(1)} %` : "-"}</td>
