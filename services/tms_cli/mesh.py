@@ -28,7 +28,7 @@ from tms_cli.reasons import (
     SupervisordFailed,
     SupervisordNotUp,
 )
-from tms_cli.words import say
+from tms_cli.words import say, sentence
 from tms_config.clock import monotonic, sleep
 from tms_config.config import CHOICE, Site
 from tms_config.processes import Process, here
@@ -36,6 +36,7 @@ from tms_host import store
 from tms_host.supervisor import Supervisor, render, runtime_folder
 from tms_reason.errors import ConfigError, TmsError
 from tms_reason.reason import Reason
+from tms_reason.remedies import ENABLE
 from tms_runtime import metrics, state_folder
 from tms_runtime.environment import environment
 from tms_runtime.priority import session_first
@@ -43,6 +44,7 @@ from tms_ur.address import certificate, users
 
 NEEDED_BYTES = 100 * 2**20  # for logs
 READY_LIMIT = 60.0  # s for all processes to be ready
+ENABLED_LATE = 3.0  # s in which a gateway that starts may still learn which areas are enabled
 START_LIMIT = 10.0  # s for supervisord to answer
 MESH_END_LIMIT = 20.0  # s for all processes to end
 NICE = -10  # of all processes together, against other sessions of this PC, where one command could take half the PC
@@ -231,12 +233,15 @@ def _wait(holds: Callable[[], bool], seconds: float, otherwise: Reason) -> None:
 def wait_ready(site: Site, report: Callable[[str], None]) -> None:
     """Wait until every process that starts by itself is ready; `report` gets one line per process.
 
+    Those that wait for areas that nobody has enabled are told and left: for that, the mesh must run.
+
     Raises:
         TmsError: names the first process that did not get ready, why, and where its log is.
     """
     waiting = {row.full: row for row in here(site) if row.autostart and row.ours}
     deadline = monotonic() + READY_LIMIT
     reasons: dict[str, Reason] = {}
+    others = monotonic()  # when a process last waited for something else
     while waiting:
         for name, row in list(waiting.items()):
             reason = metrics.unready(row)
@@ -245,8 +250,14 @@ def wait_ready(site: Site, report: Callable[[str], None]) -> None:
                 report(say("{name} ready", name=name))
             else:
                 reasons[name] = reason
+        if any(reasons[name].remedy != ENABLE for name in waiting):
+            others = monotonic()
+        elif monotonic() - others > ENABLED_LATE:
+            for name in waiting:
+                report(say("{name} waits: {why}", name=name, why=sentence(reasons[name])))
+            return
         if waiting and monotonic() > deadline:
-            name = next(iter(waiting))
+            name = min(waiting, key=lambda name: reasons[name].remedy == ENABLE)
             raise TmsError(NotReadyAfter(name, READY_LIMIT, reasons[name]))
         sleep(0.1)
 

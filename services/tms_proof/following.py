@@ -78,6 +78,14 @@ class Follower:
         return any(max(map(abs, (high - way.angles[0], low - way.angles[0]))) > SMALLEST
                    for way in self._ways.values() for low, high in [way.hull(0.0, passed)])  # fmt: skip
 
+    def behind(self, over: float) -> dict[str, tuple[float, float]]:
+        """Where each joint began, and how far from there it must be [rad] if what was commanded until `over` has come.
+
+        What is commanded within dead time and lag may not have come yet.
+        """
+        passed = (over - self._begun) * self._scale - self._reached
+        return {name: (way.angles[0], abs(way.at(passed) - way.angles[0])) for name, way in self._ways.items()}
+
     def on_its_way(self, now: float, dead_times: Mapping[str, float], over: float) -> dict[str, float]:
         """How far each joint [rad] must go after a stop: what was commanded within its dead time [s], until `over`.
 

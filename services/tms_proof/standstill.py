@@ -5,11 +5,11 @@ for every channel of every source, that it stood for a while: before that, a com
 the hydraulics may move it. A channel without samples does not count as standing.
 """
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 from tms_proof.channel import WORST, Limits, Place
 from tms_proof.facts import MachineFacts
+from tms_proof.proof import INFINITE, NOTHING, SEEN, Expected, Proof
 from tms_proof.reasons import Beyond, Moving, NoSource, NotLongEnough
 from tms_proof.source import LABELS, SourceSample, SourceWatch, Trouble
 from tms_reason.reason import Reason
@@ -17,8 +17,6 @@ from tms_reason.reason import Reason
 JOINTS, ODOM, POSE, IMU = "joint_states", "odom", "pose", "imu"
 PLACE, HEADING, TURNING = "place", "heading", "turning"
 HARD = 0.2  # rad; a joint that far beyond its limit is impossible: its sensor, or its name, is wrong
-INFINITE = float("inf")
-SEEN, SHARE = 0.003, 0.5  # a commanded motion above so many rad must be seen, and this share of it after the stop
 SAME_TIME = 1e-6  # s
 OBEYS = 3.5  # s that a machine may go on after the command to stop, unless it was seen to obey
 
@@ -30,47 +28,6 @@ class Travel:
     joint: str = ""  # the joint that went furthest, or `heading`
     angle: float = 0.0  # rad
     way: float = 0.0  # m, of the base
-
-
-@dataclass(frozen=True)
-class Expected:
-    """The motion that must be seen, or must have been seen, for the sources to be believed."""
-
-    since: float | None = None  # s, monotonic, when it began; None: no motion was commanded
-    to_come: Mapping[str, float] = field(default_factory=dict)  # joint -> rad that were commanded and not seen yet
-
-
-NOTHING = Expected()
-# For a restarted gateway: it sees only a part of the motion that was commanded. Without this, a machine that coasts and
-# replays a record of its last seconds, in which the motion had just begun, would be believed to stand.
-UNKNOWN = Expected(INFINITE)
-
-
-@dataclass(frozen=True)
-class Proof:
-    """What must be seen after one stop."""
-
-    start: float  # s, monotonic: only later measurements count ...
-    unseen: float  # s, ... and only those after this, if the expected motion was never seen
-    expected: Expected
-    seconds: float  # s of standing
-    immediate: bool = False  # the stop also cancels commands that are on their way
-
-    def later(self, start: float) -> "Proof":
-        """The same from a moment on."""
-        return replace(self, start=max(self.start, start), unseen=max(self.unseen, start))
-
-    def after(self, other: "Proof") -> "Proof":
-        """What must be seen if another stop was commanded before: the motion that it waits for may still come."""
-        if self.immediate:
-            return self
-        since = [one for one in (self.expected.since, other.expected.since) if one is not None]
-        mine, others = self.expected.to_come, other.expected.to_come
-        to_come = {name: max(mine.get(name, 0.0), others.get(name, 0.0)) for name in {*mine, *others}}
-        return Proof(
-            max(self.start, other.start), max(self.unseen, other.unseen),
-            Expected(max(since, default=None), to_come), max(self.seconds, other.seconds),
-        )  # fmt: skip
 
 
 class StandStill:
@@ -232,7 +189,7 @@ class StandStill:
         visible = self._evident_at > begun - WORST or begun - self._quiet_since > self.dead_time
         immediate = strongest and self._facts.stops_at_once and visible
         wait, coming = (0.0, {}) if immediate else (self.dead_time, expected.to_come)
-        expected = Expected(expected.since, {name: way for name, way in coming.items() if way > SEEN})
+        expected = replace(expected, to_come={name: way for name, way in coming.items() if way > SEEN})
         unseen = begun + self.settles
         return Proof(begun + wait, unseen, expected, self._facts.still.seconds, immediate)
 
@@ -249,10 +206,8 @@ class StandStill:
         return self.dead_time + self.braking + OBEYS
 
     def _start(self, proof: Proof) -> float:
-        since, angles = proof.expected.since, self._angles
         seen = self._doubted_at < proof.unseen - self.settles - SAME_TIME
-        seen = seen and (since is None or self._motion_at > since)
-        seen = seen and all(angles.get(name, 0.0) >= SHARE * way for name, way in proof.expected.to_come.items())
+        seen = seen and proof.expected.seen(self._motion_at, self._angles, self.positions)
         return proof.start if seen else proof.unseen
 
     def _surprised(self) -> float:

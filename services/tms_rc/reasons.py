@@ -2,9 +2,7 @@
 
 from tms_reason.quantities import Moments, Number, Radians, RadiansPerSecond
 from tms_reason.reason import Reason
-from tms_reason.remedies import EDIT_CONFIG, INSPECT, PROCESSES, REARM, RETRY, Remedy
-
-ENABLE = Remedy("enable_areas", "tms areas enable", "Look at the areas, then enable them")
+from tms_reason.remedies import EDIT_CONFIG, ENABLE, INSPECT, PROCESSES, REARM, RETRY
 
 
 # fmt: off

@@ -30,5 +30,6 @@ EDIT_TASK = Remedy("edit_task", "", "Correct the task in the editor and store it
 EDIT_CONFIG = Remedy("edit_config", "", "Correct the file")
 OTHER_FOLDER = Remedy("edit_config", "", "Set TMS_STATE to another folder")
 RELEASE_STOP = Remedy("release_stop", "", "Release the software stop")
+ENABLE = Remedy("enable_areas", "tms areas enable", "Look at the areas, then enable them")
 INSPECT = Remedy("look", "", "Look at the machine and at its PC")
 RETRY = Remedy("retry", "", "Try again in a moment")

@@ -229,9 +229,7 @@ def test_a_stopped_process_is_a_fault_only_where_it_should_run(page: Page, addre
     expect(page.locator("#log_text")).to_be_empty()
 
 
-def test_long_lines_of_a_log_leave_the_buttons_of_its_process_on_the_page(
-    page: Page, address: str, yard: Yard
-) -> None:
+def test_long_lines_of_a_log_leave_the_buttons_of_its_process_on_the_page(page: Page, address: str, yard: Yard) -> None:
     details = Foreign("pid 16797, uptime 0:01:16")  # what supervisord says of each process that runs
     found = Process(name="tms:ts", state="RUNNING", pid=16797, uptime=78.0, detail=view(details))
     yard.board.put_host(Host(name="site-pc-1", processes=[found]))

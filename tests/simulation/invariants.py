@@ -53,7 +53,8 @@ def _in_time(site: Site, unit: Unit) -> None:
 def _stood_in(site: Site, unit: Unit) -> None:
     """A machine whose gateway is lost does not move for long while its host agent works."""
     gateway, machine = unit.gateway, unit.machine
-    young = gateway.lost_at - gateway.up_at < FOUND or site.host.worked_for() < FOUND + STOP_IN_TIME
+    met = max(gateway.up_at, site.host.up_at) + FOUND  # before that, the scheduler's stop is all that there is
+    young = gateway.lost_at < met or site.host.worked_for() < FOUND + STOP_IN_TIME
     if gateway.lost_for() < STOP_IN_TIME or young or unit.second is not None:
         return
     if machine.plant.goal is not None and not machine.plant.fault.ignore_cancel and (

@@ -18,8 +18,7 @@ def ask(gateway: Gateway, now: float, asked: GoalAsked) -> None:
     if asked.wrong is not None:
         _refuse(gateway, asked, asked.wrong)
         return
-    goal = Goal(asked, now)
-    gateway.waiting.append(goal)
+    gateway.waiting.append(Goal(asked, now))
     admit(gateway, now)
 
 

@@ -6,7 +6,7 @@ from tms_decision.gateway.stops import StopKind
 from tms_decision.latch import ANY_LEAF, UNKNOWN_RUN
 from tms_decision.owner import Owner
 from tms_decision.reasons import NoRunTold, TakenByAnother
-from tms_proof.standstill import UNKNOWN
+from tms_proof.proof import UNKNOWN
 
 REACHED = 5.0  # s for the machine's servers to be there
 LEFT_MOVING = 2.0  # s that a machine that was left armed and idle is watched for a motion

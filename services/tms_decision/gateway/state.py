@@ -12,7 +12,8 @@ from tms_decision.permit_link import PermitLink
 from tms_decision.vigil import Vigil
 from tms_proof.facts import MachineFacts
 from tms_proof.following import Follower
-from tms_proof.standstill import Proof, StandStill
+from tms_proof.proof import Proof
+from tms_proof.standstill import StandStill
 from tms_reason.reason import Reason
 
 SCHEDULER = "ts"  # the scheduler's permit

@@ -11,7 +11,7 @@ from tms_decision.gateway import effects as f
 from tms_decision.gateway import notes
 from tms_decision.gateway.events import ReceiptKept
 from tms_decision.gateway.state import Gateway, Goal, Stop
-from tms_proof.standstill import NOTHING, UNKNOWN, Expected
+from tms_proof.proof import NOTHING, UNKNOWN, Expected
 from tms_reason.reason import Reason, Several
 
 STOP_PROVEN = 10.0  # s within which a gateway sees that a machine stands, or reports that it does not
@@ -70,8 +70,8 @@ def _expected(gateway: Gateway, goal: Goal, over: float, now: float) -> Expected
     if goal.follower is None:
         return Expected(goal.sent)
     since = goal.sent if goal.follower.should_have_moved(over - goal.sent) else None
-    arrived = goal.outcome == "SUCCEEDED"
-    return Expected(since, {} if arrived else goal.follower.on_its_way(now, gateway.watch.dead_times, over))
+    on_its_way = {} if goal.outcome == "SUCCEEDED" else goal.follower.on_its_way(now, gateway.watch.dead_times, over)
+    return Expected(since, on_its_way, goal.follower.behind(over))
 
 
 def _begin(gateway: Gateway, now: float, cause: Reason, latched: bool, run: int, expected: Expected) -> Stop:

@@ -12,7 +12,10 @@ from conftest import site_data
 from tms_cli import mesh
 from tms_cli.commands import check
 from tms_config.config import Site, load_site
-from tms_reason.errors import ConfigError
+from tms_machine.reasons import WaitingFor
+from tms_rc.reasons import AreasNotEnabled
+from tms_reason.errors import ConfigError, TmsError
+from tms_reason.reason import Reason
 
 PCS = {
     "cps": {"address": "127.0.0.1", "roles": ["cps", "machine", "sim"]},
@@ -125,3 +128,20 @@ def test_a_group_that_the_caller_runs_itself_is_left_out(tmp_path: Path, monkeyp
     monkeypatch.setattr(mesh, "_start", lambda _, conf: started.append(conf.read_text()))
     assert mesh.up(ours, without="sim") is True
     assert "tms_runtime.run zx200:rc\n" in started[0] and "tms_runtime.run sim:" not in started[0]
+
+
+def test_a_gateway_whose_areas_nobody_has_enabled_is_told_and_not_waited_for(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Only a person can help, with the mesh that has just started."""
+    told = list[str]()
+    lacks: dict[str, Reason] = {"zx200:rc": AreasNotEnabled()}
+    monkeypatch.setattr(mesh, "ENABLED_LATE", 0.05)
+    monkeypatch.setattr(mesh.metrics, "unready", lambda row: lacks.get(row.full))
+    ours = site(tmp_path)
+    mesh.wait_ready(ours, told.append)
+    assert "zx200:rc waits: no areas are enabled for this site" in told and "tms:ts ready" in told
+    lacks["tms:ts"] = WaitingFor("tms:db")
+    monkeypatch.setattr(mesh, "READY_LIMIT", 0.2)
+    with pytest.raises(TmsError, match="tms:ts is not ready"):
+        mesh.wait_ready(ours, told.append)

@@ -72,6 +72,13 @@ def test_a_motion_is_to_be_seen_once_its_reference_has_moved() -> None:
     assert follower.should_have_moved(0.1)
 
 
+def test_what_was_commanded_before_dead_time_and_lag_must_have_come() -> None:
+    follower = Follower({"boom": Way([0.0, 2.0], [0.5, 0.1])}, DEAD + LAG, 100.0)
+    assert follower.behind(100.0 + DEAD + LAG) == {"boom": (0.5, pytest.approx(0.0))}
+    assert follower.behind(101.0 + DEAD + LAG) == {"boom": (0.5, pytest.approx(0.2))}
+    assert follower.behind(110.0) == {"boom": (0.5, pytest.approx(0.4))}
+
+
 def test_what_is_on_its_way_is_a_joint_s_own_dead_time_by_either_kind_of_controller() -> None:
     follower = Follower(ways(NAMES, POINTS, START), DEAD + LAG, 100.0)
     on_its_way = follower.on_its_way(103.0, {"swing": 0.9, "boom": 0.3}, 103.0)

@@ -4,7 +4,8 @@ import pytest
 
 from tms_proof.channel import WORST
 from tms_proof.facts import JointFacts
-from tms_proof.standstill import HEADING, INFINITE, NOTHING, OBEYS, ODOM, PLACE, SEEN, Expected, Proof, StandStill
+from tms_proof.proof import INFINITE, NOTHING, SEEN, Expected, Proof
+from tms_proof.standstill import HEADING, OBEYS, ODOM, PLACE, StandStill
 from unit.tms_proof.told_machine import ARM, BOOM, NO_STOPS, PERIOD, joints, machine, tell
 
 

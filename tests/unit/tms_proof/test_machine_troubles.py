@@ -3,9 +3,10 @@
 import pytest
 
 from tms_proof.facts import JointFacts
+from tms_proof.proof import INFINITE, NOTHING, Proof
 from tms_proof.reasons import Beyond, JointStates, Moving, NewClock, NotLongEnough, TwoPublishers
 from tms_proof.source import SourceSample
-from tms_proof.standstill import HARD, INFINITE, JOINTS, NOTHING, ODOM, Proof, StandStill, Travel
+from tms_proof.standstill import HARD, JOINTS, ODOM, StandStill, Travel
 from unit.tms_proof.told_machine import PERIOD, joints, machine, tell
 
 

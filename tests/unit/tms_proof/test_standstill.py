@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from tms_config.models import Border, MachineModel
 from tms_machine.facts import machine_facts
 from tms_proof.facts import MachineFacts, SourceFacts, StillFacts
+from tms_proof.proof import NOTHING, UNKNOWN, Expected
 from tms_proof.reasons import (
     ClockAhead,
     JointStates,
@@ -32,12 +33,9 @@ from tms_proof.standstill import (
     HEADING,
     IMU,
     JOINTS,
-    NOTHING,
     ODOM,
     PLACE,
     TURNING,
-    UNKNOWN,
-    Expected,
     StandStill,
     Travel,
 )
@@ -390,6 +388,15 @@ def test_a_gateway_that_was_started_anew_waits_for_every_motion_whatever_it_sees
     begun = reporter.now
     seen = Expected(begun)
     assert stood_after(reporter, replay, begun, expected=seen) < COASTS, "this record would have been believed"
+
+
+@pytest.mark.parametrize(
+    ("begun", "way", "seen"), [(0.5, 0.2, False), (0.45, 0.2, False), (0.35, 0.2, True), (0.5, 0.002, True)]
+)
+def test_a_motion_that_has_come_shows_another_place(begun: float, way: float, seen: bool) -> None:
+    """A record of another motion shows a motion, too."""
+    assert Expected(1.0, {}, {"boom": (begun, way)}).seen(2.0, {}, {"boom": 0.5}) is seen
+    assert Expected(1.0, {}, {"arm": (begun, way)}).seen(2.0, {}, {"boom": 0.5}) is (way == 0.002)
 
 
 @pytest.mark.parametrize(("commanded", "comes"), [(0.2, 0.0), (0.008, 0.2)], ids=["nothing comes", "a part comes"])
