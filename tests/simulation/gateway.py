@@ -11,7 +11,7 @@ from simulation.lease import PermitProcess, Topic
 from simulation.machine import SPEED
 from simulation.order import Order
 from simulation.plant import JOINT, facts
-from simulation.world import Violation
+from simulation.world import Process, Violation
 from tms_decision.gateway import effects as f
 from tms_decision.gateway import events as e
 from tms_decision.gateway.state import Gateway
@@ -51,6 +51,7 @@ class GatewayProcess(PermitProcess):
         self.calls: dict[int, tuple[float, Callable[[f.Effect], None]]] = {}
         self.latched = False  # a person has pressed stop, and nobody has armed since: no goal may leave
         self.pressed_at = float("-inf")  # when it last heard the button
+        self.heard_with: list[tuple[Process, int]] = []  # who heard that, in which life
         self.noted_at = 0.0  # when the disk last knew of every latch
         self.cancelled: dict[int, float] = {}  # goals whose client has cancelled them, and when
         self._kept: set[float] = set()  # receipts that the disk has answered, by their stamps
@@ -238,8 +239,13 @@ class GatewayProcess(PermitProcess):
         busy = core.watch.moving() or core.active is not None or bool(core.holder(now))
         self.unit.published(State(core.latch.cause, core.latch.hold, core.by_hand, ready, busy))
 
+    def _forgotten(self) -> bool:
+        """Whether all who had heard the last press were killed while the disk hung: then nothing is left of it."""
+        return all(one.life != life and self.pressed_at <= one.lost_at <= self.notes.stalls
+                   for one, life in self.heard_with)  # fmt: skip
+
     def _send(self, number: int) -> None:
-        if self.latched:
+        if self.latched and not self._forgotten():
             raise Violation(f"goal {number} leaves after a stop, before a re-arm")
         order = self.asked[number]
         run = order.owner.run if order.owner is not None else 0

@@ -88,13 +88,13 @@ def _left(unit: Unit, now: float) -> None:
     """
     (begun, ends), core, plant = unit.levers, unit.gateway.core, unit.machine.plant
     unit.latched_since = unit.latched_since if core is not None and core.latch.cause is not None else now
-    begun = max(begun, unit.lies_since)
+    by_hand = unit.driven or (core is not None and core.by_hand is not None)
+    unit.by_hand_at = now if by_hand else unit.by_hand_at
+    begun = max(begun, unit.lies_since, unit.by_hand_at)
     if (
         not begun + STOP_IN_TIME < now < ends
         or unit.latched_since > begun
         or plant.speed == 0.0
-        or unit.driven
-        or (core is not None and core.by_hand is not None)
         or plant.fault != Fault()
     ):
         return

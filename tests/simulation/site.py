@@ -90,6 +90,7 @@ class Site:
         def arrives(gateway: GatewayProcess) -> None:
             if gateway.works() and on:
                 gateway.latched, gateway.pressed_at = True, self.world.now
+                gateway.heard_with = [(one, one.life) for one in (gateway, self.host, self.scheduler)]
             gateway.happens(e.Signal(on))
 
         for process in (self.host, self.scheduler) if on else ():

@@ -67,6 +67,7 @@ class Unit:
         self.driven = False  # a person has taken it
         self.missed = float("inf")  # when a press came that its gateway has not heard
         self.latched_since = 0.0
+        self.by_hand_at = float("-inf")  # when a person last had it
         self.lies_since = 0.0  # when it last became unkind, or kind again
         self.levers = 0.0, 0.0  # when somebody moves it by its levers without a word, from and to
         self.receipts: list[f.Receipt] = []
