@@ -260,14 +260,15 @@ def run(seed: int, guarded: bool = True, keeps_on: float = math.inf, dash: bool 
         driver.until, driver.wish = math.inf, _dash(seed, what.tracks)
         told.delay, told.noise, told.drift = SLOWEST, 0.002, SURE
     going, stopped, next_beat, wrong = False, False, 0.0, False
-    stood_at = 0.0
+    stood_at, heard = 0.0, (math.nan, math.nan, math.nan)
     wished = (0.0, 0.0)
     for step in range(round(SECONDS / STEP)):
         plant.step()
         now = plant.now
         for at, pose in told.take(now, (plant.x, plant.y, plant.yaw)):
             fix.heard(at, *pose)
-            wrong = math.dist(pose[:2], (plant.x, plant.y)) > WRONG
+            if pose != heard:  # one that stands to the last bit is no news, and gets old instead
+                wrong, heard = math.dist(pose[:2], (plant.x, plant.y)) > WRONG, pose
         fix.odometry(plant.v, plant.w)
         if now >= next_beat:
             next_beat = now + BEAT * r.uniform(0.8, 1.4)
