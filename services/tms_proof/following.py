@@ -78,12 +78,12 @@ class Follower:
         return any(max(map(abs, (high - way.angles[0], low - way.angles[0]))) > SMALLEST
                    for way in self._ways.values() for low, high in [way.hull(0.0, passed)])  # fmt: skip
 
-    def behind(self, over: float) -> dict[str, tuple[float, float]]:
+    def behind(self, over: float, now: float) -> dict[str, tuple[float, float]]:
         """Where each joint began, and how far from there it must be [rad] if what was commanded until `over` has come.
 
-        What is commanded within dead time and lag may not have come yet.
+        What was commanded within dead time and lag before `now` may not have come yet.
         """
-        passed = (over - self._begun) * self._scale - self._reached
+        passed = (min(over, now - self._reached / self._scale) - self._begun) * self._scale
         return {name: (way.angles[0], abs(way.at(passed) - way.angles[0])) for name, way in self._ways.items()}
 
     def on_its_way(self, now: float, dead_times: Mapping[str, float], over: float) -> dict[str, float]:

@@ -54,7 +54,7 @@ class Proof:
             return self
         since = [one for one in (self.expected.since, other.expected.since) if one is not None]
         mine, others = self.expected.to_come, other.expected.to_come
-        behind = self.expected.behind or other.expected.behind
+        behind = {**other.expected.behind, **self.expected.behind}  # of each joint, its last goal
         to_come = {name: max(mine.get(name, 0.0), others.get(name, 0.0)) for name in {*mine, *others}}
         return Proof(
             max(self.start, other.start), max(self.unseen, other.unseen),

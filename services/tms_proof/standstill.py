@@ -207,7 +207,8 @@ class StandStill:
 
     def _start(self, proof: Proof) -> float:
         seen = self._doubted_at < proof.unseen - self.settles - SAME_TIME
-        seen = seen and proof.expected.seen(self._motion_at, self._angles, self.positions)
+        places = self.positions if proof.expected.behind else {}  # worked out only where they count
+        seen = seen and proof.expected.seen(self._motion_at, self._angles, places)
         return proof.start if seen else proof.unseen
 
     def _surprised(self) -> float:

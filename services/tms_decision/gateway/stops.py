@@ -71,7 +71,7 @@ def _expected(gateway: Gateway, goal: Goal, over: float, now: float) -> Expected
         return Expected(goal.sent)
     since = goal.sent if goal.follower.should_have_moved(over - goal.sent) else None
     on_its_way = {} if goal.outcome == "SUCCEEDED" else goal.follower.on_its_way(now, gateway.watch.dead_times, over)
-    return Expected(since, on_its_way, goal.follower.behind(over))
+    return Expected(since, on_its_way, goal.follower.behind(over, now))
 
 
 def _begin(gateway: Gateway, now: float, cause: Reason, latched: bool, run: int, expected: Expected) -> Stop:

@@ -74,9 +74,11 @@ def test_a_motion_is_to_be_seen_once_its_reference_has_moved() -> None:
 
 def test_what_was_commanded_before_dead_time_and_lag_must_have_come() -> None:
     follower = Follower({"boom": Way([0.0, 2.0], [0.5, 0.1])}, DEAD + LAG, 100.0)
-    assert follower.behind(100.0 + DEAD + LAG) == {"boom": (0.5, pytest.approx(0.0))}
-    assert follower.behind(101.0 + DEAD + LAG) == {"boom": (0.5, pytest.approx(0.2))}
-    assert follower.behind(110.0) == {"boom": (0.5, pytest.approx(0.4))}
+    running = [(late, late, late - DEAD - LAG) for late in (DEAD + LAG, 1.0 + DEAD + LAG, 2.0 + DEAD + LAG)]
+    over = [(0.5, 0.5 + DEAD + LAG, 0.5), (0.5, 5.0, 0.5), (2.0, 2.0 + DEAD, 2.0 - LAG), (10.0, 10.0, 2.0)]
+    for end, now, seconds in running + over:
+        expected = {"boom": (0.5, pytest.approx(0.2 * seconds))}
+        assert follower.behind(100.0 + end, 100.0 + now) == expected, (end, now)
 
 
 def test_what_is_on_its_way_is_a_joint_s_own_dead_time_by_either_kind_of_controller() -> None:
