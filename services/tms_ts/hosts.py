@@ -13,6 +13,7 @@ from tms_ros.node import Ros
 from tms_ts.reasons import CannotStart, ProcessState
 
 START_LIMIT = 10.0  # s
+WHOLE = 1.0  # s by which an uptime may be too long: supervisord tells whole seconds
 
 
 class Hosts:
@@ -31,6 +32,11 @@ class Hosts:
         """Pid of a subtask's process, 0 if it does not run; None for a server that no host agent knows."""
         found = self._known.get(f"{machine}:{subtask}")
         return None if found is None else int(found[1].pid)
+
+    def age(self, machine: str, subtask: str) -> float:
+        """Seconds for which a subtask's process has run at least; 0 for one that no host agent knows."""
+        found = self._known.get(f"{machine}:{subtask}")
+        return 0.0 if found is None else max(0.0, float(found[1].uptime) - WHOLE)
 
     def fatal(self, machine: str, process: str) -> Reason | None:
         """The reason FATAL if supervisord has given up a process."""

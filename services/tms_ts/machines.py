@@ -124,9 +124,9 @@ class Machines:
         below = [hosts.trouble(machine, process) for process in ("rc", "rp")]
         given_up = [hosts.fatal(machine, process) for process in processes]
         return e.Seen(
-            self.peer(machine, subtask).ready(), hosts.pid(machine, subtask), next(filter(None, below), None),
-            hosts.trouble(machine, subtask), next(filter(None, given_up), None), gateways.obstacle(machine),
-            gateways.latch(machine),
+            self.peer(machine, subtask).ready(), hosts.pid(machine, subtask), hosts.age(machine, subtask),
+            next(filter(None, below), None), hosts.trouble(machine, subtask), next(filter(None, given_up), None),
+            gateways.obstacle(machine), gateways.latch(machine),
         )  # fmt: skip
 
     # decisions

@@ -230,7 +230,7 @@ class Execution:
         unit, scheduler = self.scheduler.site.units[key[1]], self.scheduler
         ready = scheduler.finds(unit.relays[SUBTASK], self._dead.get(unit.name, 0))
         return le.Seen(
-            ready, unit.pids.get(SUBTASK), _trouble(unit, PLANNER), _trouble(unit, SUBTASK),
+            ready, unit.pids.get(SUBTASK), unit.age(SUBTASK), _trouble(unit, PLANNER), _trouble(unit, SUBTASK),
             machine=scheduler.obstacle(unit.name), latch=scheduler.latch(unit.name),
         )  # fmt: skip
 

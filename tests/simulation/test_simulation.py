@@ -94,6 +94,11 @@ def test_a_motion_that_no_source_has_shown_is_waited_for(seed: int) -> None:
     assert Schedule(seed).run().violation == ""
 
 
+def test_a_subtask_that_nobody_knew_is_found_to_be_a_later_one() -> None:
+    """The host agent was frozen before it had told of it, and the subtask was killed during its goal."""
+    assert Schedule(1120741919).run().violation == ""
+
+
 def test_a_press_outlives_a_gateway_and_its_host_agent(monkeypatch: pytest.MonkeyPatch) -> None:
     """The gateway was killed before the disk had its latch, and the host agent before it could tell the next one."""
     put_out("the scheduler's stop after a press", monkeypatch.setattr)

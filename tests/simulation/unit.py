@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from itertools import count
 from typing import TYPE_CHECKING
@@ -61,6 +62,7 @@ class Unit:
             self.relays[PLANNER] = Relay(self, PLANNER, "rc")
         self.host: HostAgent | None = None
         self.pids: dict[str, int] = {}  # of the relays, as the host agent has told them
+        self._uptimes: dict[str, float] = {}  # s, with them
         self.sent_at = float("-inf")  # when the last goal left for the machine ...
         self.owner: Owner | None = None  # ... and whose it was
         self.goals = 0  # sent
@@ -136,6 +138,11 @@ class Unit:
         """The host agent tells which process a relay is."""
         relay = self.relays[name]
         self.pids[name] = relay.life if relay.alive else 0
+        self._uptimes[name] = math.floor(self.world.now) - math.floor(relay.begun_at)
+
+    def age(self, name: str) -> float:
+        """Seconds for which a relay has run at least, by the host agent's last word: whole seconds of two clocks."""
+        return max(0.0, self._uptimes.get(name, 0.0) - 1.0)
 
     # what leaves
 

@@ -83,6 +83,7 @@ class Process:
     lost_at: float = 0.0  # when it was killed or frozen last
     silent_at: float = 0.0  # when the life that was killed last said its last word
     up_at: float = 0.0  # when it began to work last
+    begun_at: float = 0.0  # when its life began
 
     def frozen(self) -> bool:
         return self.world.now < self.thaws
@@ -121,7 +122,7 @@ class Process:
     def begin(self) -> None:
         self.alive, self.thaws, self.waiting = True, 0.0, []
         self.life += 1
-        self.up_at = self.world.now
+        self.up_at = self.begun_at = self.world.now
         self.world.tell(self.name, f"starts ({self.life})")
 
     def kill(self) -> None:

@@ -137,8 +137,7 @@ def _receipt(gateway: Gateway, one: Stop, now: float) -> f.Receipt:
     confirmed, unstamped = seen and one.broken is None, gateway.watch.unstamped
     return f.Receipt(
         one.cause, one.stamp, one.run, one.latched or not confirmed, confirmed, now - one.begun, travel.joint,
-        travel.angle, travel.way, None if confirmed else obstacle,
-        r.ByArrival(tuple(unstamped)) if unstamped else None,
+        travel.angle, travel.way, None if confirmed else obstacle, r.ByArrival(tuple(unstamped)) if unstamped else None,
     )  # fmt: skip
 
 

@@ -25,6 +25,7 @@ class Seen(Data):
 
     ready: bool = True  # the subtask's server is there
     pid: int | None = None  # of the subtask's process, 0 if it does not run; None: no host agent knows it
+    age: float = 0.0  # s for which that process has run at least
     below: Reason | None = None  # what is wrong with the process of gateway or planner
     process: Reason | None = None  # what is wrong with the subtask's process
     given_up: Reason | None = None  # one of the three that supervisord has given up

@@ -30,5 +30,4 @@ class Replay:
         Returns the dropped goals, and how often each had ended without being asked for again.
         """
         past = [key for key in list(self._ended) if not self.beside(key[0], node)]
-        dropped = [(key, len(self._ended.pop(key, ()))) for key in past]
-        return [(key, left) for key, left in dropped if left]
+        return [(key, left) for key in past if (left := len(self._ended.pop(key)))]

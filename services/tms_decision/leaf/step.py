@@ -60,7 +60,8 @@ def _cancel(goals: LeafGoals, goal: LeafGoal) -> None:
 
 
 def _look(goals: LeafGoals, goal: LeafGoal, seen: e.Seen, now: float) -> None:
-    goal.pid = seen.pid if goal.pid is None else goal.pid  # nobody may have known it when the goal was sent
+    if goal.pid is None and seen.pid is not None:  # nobody knew it when the goal was sent: is it still the same one?
+        goal.pid = seen.pid if seen.age > now - goal.begun else 0
     if not goal.call:
         _try(goals, goal, seen, now)
     elif (why := _loss(goal, seen, now)) is not None:

@@ -133,10 +133,22 @@ def test_a_process_that_nobody_knew_when_the_goal_was_sent_is_known_later(site: 
     site.seen = replace(site.seen, pid=None)
     site.ask((*PAST[:3], "there"))
     goal = site.goals.open[-1]
-    step(site.goals, e.Looked({goal.asked.number: replace(site.seen, pid=5)}), site.now)
+    step(site.goals, e.Looked({goal.asked.number: replace(site.seen, pid=5, age=60.0)}), site.now)
     assert goal.losses == 0
-    step(site.goals, e.Looked({goal.asked.number: replace(site.seen, pid=6)}), site.now)
+    step(site.goals, e.Looked({goal.asked.number: replace(site.seen, pid=6, age=60.0)}), site.now)
     assert goal.losses == 1
+
+
+@pytest.mark.parametrize(("age", "losses"), [(0.0, 1), (1.9, 1), (2.1, 0)])
+def test_a_process_that_is_younger_than_its_goal_is_another_one(site: Goals, age: float, losses: int) -> None:
+    """The host agent was frozen when the goal was sent, and while the subtask was killed and started again."""
+    site.seen = replace(site.seen, pid=None)
+    site.ask((*PAST[:3], "there"))
+    goal = site.goals.open[-1]
+    site.happened(e.Accepted(goal.call))
+    site.now += 2.0
+    step(site.goals, e.Looked({goal.asked.number: replace(site.seen, pid=5, age=age)}), site.now)
+    assert goal.losses == losses
 
 
 def test_the_server_of_a_lost_process_is_left_alone_until_there_is_another(site: Goals) -> None:

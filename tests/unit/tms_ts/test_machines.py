@@ -53,7 +53,9 @@ class Site:
     def __init__(self) -> None:
         self.told: list[str] = []
         self.peer, self.pid = Peer(self.told), 1
-        hosts = SimpleNamespace(pid=lambda *_: self.pid, trouble=lambda *_: None, fatal=lambda *_: None)
+        hosts = SimpleNamespace(
+            pid=lambda *_: self.pid, age=lambda *_: 0.0, trouble=lambda *_: None, fatal=lambda *_: None
+        )
         gateways = SimpleNamespace(obstacle=lambda _: None, latch=lambda _: None)
         record = SimpleNamespace(
             sent=lambda key: self.told.append(f"checkpoint: sent {key[3]}"),
