@@ -78,7 +78,7 @@ class Store(Settings):
     machine_state_days: int | None = Field(ge=1, default=None)  # the same for machine_pose and machine_joints
     work_days: int | None = Field(ge=1, default=None)  # the same for cycles of work
     ground_days: int | None = Field(ge=1, default=None)  # the same for snapshots of the ground; the newest one stays
-    recording_days: int | None = Field(ge=1, default=30)  # the same for joints, poses and loads of runs
+    recording_days: int | None = Field(ge=1, default=30)  # the same for what machines did, and hourly grounds
 
     @model_validator(mode="after")
     def _whole(self) -> "Store":

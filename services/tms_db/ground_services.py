@@ -36,10 +36,13 @@ class GroundServices:
     def read(self, request: ReadSnapshot.Request, response: ReadSnapshot.Response) -> None:
         """Answer with a ground; where none was taken after the time that is asked for, with an empty `taken_at`."""
         after = _time(request.after) if request.after else None
+        until = _time(request.until) if request.until else None
         known = [one for one in self._grounds.all() if after is None or one.taken_at > after]
         if after is not None and not known:
             return
-        found = chosen(known, request.snapshot)
+        found = chosen([one for one in known if until is None or one.taken_at <= until], request.snapshot)
+        later = [one.taken_at.isoformat() for one in known if one.taken_at > found.taken_at]
+        response.next_at = later[-1] if later else ""  # the newest is first
         response.ground = patches.patch(self._grounds.read(found))
         response.ground.header.stamp = to_time(found.taken_at)
         response.taken_at, response.source = found.taken_at.isoformat(), found.source

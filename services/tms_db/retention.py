@@ -22,6 +22,7 @@ from tms_db.terrain import GROUND, Terrain
 from tms_db.worker import Worker
 from tms_reason.errors import DbError
 from tms_runtime.log import Logger
+from tms_soil.patches import EACH_HOUR
 
 FIRST = 1.0  # s from the start to the first round: the store is up by then, as a rule
 RETENTION_PERIOD = 24 * 3600.0  # s between rounds
@@ -92,8 +93,8 @@ def delete_recordings(db: Db, days: int, now: datetime) -> int:
     return _delete_older(db, RECORDING, "begin", days, now)
 
 
-def delete_grounds(db: Db, days: int, now: datetime) -> int:
-    """Delete snapshots of the ground that are older than `days`, but never the newest one. Returns how many.
+def delete_grounds(db: Db, days: int, now: datetime, source: str | None = None) -> int:
+    """Delete snapshots of the ground (of a source) older than `days`, but never the newest one. Returns how many.
 
     Raises:
         DbError: the store is away.
@@ -101,7 +102,8 @@ def delete_grounds(db: Db, days: int, now: datetime) -> int:
     terrain = Terrain(db)
     taken = [(file, datetime.fromisoformat(file.more["taken_at"])) for file in terrain.all(GROUND, GROUND)]
     newest = max((time for _, time in taken), default=now)
-    old = [file for file, time in taken if time < min(now, newest) - timedelta(days=days)]
+    before = min(now, newest) - timedelta(days=days)
+    old = [file for file, time in taken if time < before and source in (None, file.more.get("source"))]
     for file in old:
         terrain.delete(file)
     DELETED.labels(GROUND).inc(len(old))
@@ -171,5 +173,6 @@ class Retention:
             gone["grounds"] = delete_grounds(self._db, self._settings.ground_days, now)
         if self._settings.recording_days is not None:
             gone["recordings"] = delete_recordings(self._db, self._settings.recording_days, now)
+            gone["hours"] = delete_grounds(self._db, self._settings.recording_days, now, EACH_HOUR)
         if any(gone.values()):
             self._log.info("retention", reason=" ".join(f"{what}={number}" for what, number in gone.items()))

@@ -14,6 +14,7 @@ from tms_reason.reason import Reason
 from tms_reason.wire import refusal, to_line
 from tms_runtime.app import App
 from tms_soil import patches
+from tms_soil.patches import EACH_HOUR
 
 SERVICE = "/tms/ground/take_snapshot"
 READ, WRITE = "/tms/db/read_snapshot", "/tms/db/write_snapshot"
@@ -22,6 +23,7 @@ LIMIT = 60.0  # s for the database: a ground has megabytes
 AHEAD = timedelta(seconds=5)  # that clocks of two PCs may differ
 NONE = "GROUND_NOT_THERE"
 END_OF_DAY = "end of the day"
+HOUR = timedelta(hours=1)  # after which a ground that has changed is stored
 
 
 class Snapshots:
@@ -31,6 +33,7 @@ class Snapshots:
         """`lock`: while it is held, the ground does not change."""
         self._ros, self._log, self._watch, self._lock = app.ros, app.log, watch, lock
         self._day = _today()  # that a snapshot will close
+        self._stored_at = utc_now()  # when our last one was
         self._own = set[str]()  # times of what we have stored ourselves
         self._told: Reason | None = None  # why not, as it was told last
         app.ros.prepare(ReadSnapshot, READ)
@@ -39,7 +42,7 @@ class Snapshots:
         app.ros.poll_in_thread(PERIOD, self.look, "ground_snapshots")
 
     def look(self) -> None:
-        """Take what others have stored since the last look; at the end of a day, store the ground."""
+        """Take what others have stored since the last look; each hour and at the end of a day, store the ground."""
         if not self._ros.has_service(ReadSnapshot, READ):
             return
         try:
@@ -47,6 +50,8 @@ class Snapshots:
                 pass
             if _today() != self._day and (not self._watch.touched or self._write(END_OF_DAY)):
                 self._day = _today()
+            if self._watch.touched and utc_now() - self._stored_at >= HOUR:
+                self._write(EACH_HOUR)
             self._told = None
         except TmsError as error:  # the next look tries again
             if error.reason != self._told:
@@ -81,6 +86,7 @@ class Snapshots:
             if answer.taken_at not in self._own:
                 self._watch.measured(patches.heights(answer.ground), taken.timestamp())
             self._watch.newest = answer.taken_at
+            self._own.discard(answer.taken_at)
         self._log.info("snapshot_known", taken_at=answer.taken_at, source=answer.source)
         return True
 
@@ -99,6 +105,7 @@ class Snapshots:
             self._watch.touched = True
             raise
         self._own.add(answer.taken_at)
+        self._stored_at = utc_now()
         self._log.info("snapshot_stored", taken_at=answer.taken_at, source=source)
         return answer.taken_at
 

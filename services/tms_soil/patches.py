@@ -5,6 +5,8 @@ from tms_msg_ground.msg import HeightPatch
 
 from tms_soil.surface import Array, Heights
 
+EACH_HOUR = "each hour"  # the source of a snapshot that only shows in the past what machines did
+
 
 def patch(heights: Heights, serial: int = 0) -> HeightPatch:
     """Heights as a message, without its time."""

@@ -5,6 +5,7 @@ from datetime import datetime, timedelta
 from typing import TYPE_CHECKING, Annotated, Literal
 
 from fastapi import FastAPI, Path, Query, Request, Response
+from pydantic import AwareDatetime
 
 from tms_config.clock import utc_now
 from tms_config.config import Site
@@ -215,12 +216,17 @@ def _scenes(app: FastAPI, client: "SiteClient", site: Site) -> None:
         return client.watching.areas()
 
     @app.get(
-        "/api/ground", summary="Heights of the ground and of the design, of the whole site", responses=problems(503)
+        "/api/ground",
+        summary="Heights of the ground and of the design, of the whole site",
+        responses=problems(404, 503),
     )
     def ground(
         cells: Annotated[int, Query(ge=100, le=200_000, description="about how many at most")] = 40_000,
+        at: Annotated[AwareDatetime | None, Query(description="the last one kept until then; none: of now")] = None,
     ) -> Ground:
-        return Ground() if site.file.ground is None else client.ground(cells)
+        if site.file.ground is None:
+            return Ground()
+        return client.ground(cells) if at is None else client.ground_at(at, cells)
 
     @app.get("/api/machines/{name}/scene", summary="What the planner of an excavator plans among now",
              responses=problems(404, 409, 503))  # fmt: skip

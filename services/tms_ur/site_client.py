@@ -1,5 +1,6 @@
 """The API's side of ROS: blocking calls for worker threads, and topics that update the board."""
 
+from datetime import datetime
 from typing import Any
 
 from std_msgs.msg import String
@@ -41,7 +42,7 @@ from tms_ur.answers import checked
 from tms_ur.area_client import check_areas, enable_areas
 from tms_ur.board import Board
 from tms_ur.data_models import Change, Record, Sensing
-from tms_ur.ground_client import ground
+from tms_ur.ground_client import ground, ground_at
 from tms_ur.ground_models import Ground
 from tms_ur.models import AddedTemplate, Event, Host, Place, Rearmed, Receipt, Run, Task, TaskText, Template
 from tms_ur.place_client import PlaceClient
@@ -244,6 +245,10 @@ class SiteClient(RunCalls):
     def ground(self, cells: int) -> Ground:
         """The ground of the site in about so many cells at most; a TmsError says why it is not told."""
         return ground(self._ros, cells)
+
+    def ground_at(self, time: datetime, cells: int) -> Ground:
+        """The last ground that was kept until a time; a TmsError says why it is not told."""
+        return ground_at(self._ros, time, cells)
 
     # processes
 

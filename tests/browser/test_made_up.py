@@ -333,6 +333,27 @@ def test_the_cursor_of_a_run_goes_by_time(page: Page, address: str, yard: Yard) 
     expect(page.get_by_role("link", name="Link to this moment")).to_have_attribute("href", "#history/r-1/10.0")
 
 
+def test_the_ground_in_3d_is_that_of_the_cursor(page: Page, tmp_path: Path) -> None:
+    """It is the last that was kept until then: one an hour before noon, one 5 s after it."""
+    yard = Yard(ground={"area": [-10.0, -10.0, 10.0, 10.0]})
+    yard.receive()
+    yard.journals = {"r-1": [event(1, "tree", **SHAPE)]}
+    with serving(yard, tmp_path) as address:
+        page.goto(f"{address}/#history/r-1/8")
+        page.locator("#past_3d").click()
+        note = page.locator("#ground_note")
+        expect(note).to_contain_text("as it was kept at")
+        later = note.inner_text()
+        page.locator("#slider").fill("20")
+        expect(note).not_to_have_text(later)
+        expect(note).to_contain_text("as it was kept at")
+        asked = [call[1] for call in yard.calls if call[0] == "ground_at"]
+        assert asked == [NOON + timedelta(seconds=8), NOON + timedelta(seconds=2)]
+        page.locator("#slider").fill("60")
+        expect(note).to_have_text(later)
+    assert [call[0] for call in yard.calls if call[0] == "ground"] == [], "the ground of now was not asked for"
+
+
 def test_what_machines_did_is_on_the_cursor(page: Page, address: str, yard: Yard) -> None:
     """Map, numbers, plots and 3D at the same moment as the tree; a click on a plot goes there."""
     ends = [Event(number=2, stamp=NOON + timedelta(seconds=8), kind="run", node="", text="ended")]

@@ -38,9 +38,9 @@ def level(z: float) -> Heights:
     return found
 
 
-def read(services: GroundServices, snapshot: str, after: str = "") -> ReadSnapshot.Response:
+def read(services: GroundServices, snapshot: str, after: str = "", until: str = "") -> ReadSnapshot.Response:
     answer = ReadSnapshot.Response()
-    services.read(ReadSnapshot.Request(snapshot=snapshot, after=after), answer)
+    services.read(ReadSnapshot.Request(snapshot=snapshot, after=after, until=until), answer)
     return answer
 
 
@@ -59,6 +59,17 @@ def test_they_come_back_by_time(services: GroundServices) -> None:
     with pytest.raises(DbError) as caught:
         read(services, "1999-01-01")
     assert isinstance(caught.value.reason, GroundNotThere) and caught.value.code == "GROUND_NOT_THERE"
+
+
+def test_the_ground_of_a_moment_is_the_last_until_then(services: GroundServices) -> None:
+    hours = [(NOON + timedelta(hours=hour)).isoformat() for hour in range(3)]
+    for minutes, hour in [(0, 0), (59, 0), (60, 1), (119, 1)]:
+        found = read(services, "last", until=(NOON + timedelta(minutes=minutes)).isoformat())
+        assert (found.taken_at, found.next_at) == (hours[hour], hours[hour + 1])
+    assert (read(services, "last").taken_at, read(services, "last").next_at) == (hours[2], "")
+    with pytest.raises(DbError) as caught:
+        read(services, "last", until=(NOON - timedelta(seconds=1)).isoformat())
+    assert caught.value.code == "GROUND_NOT_THERE"
 
 
 @pytest.mark.parametrize("time", ["yesterday", "2026-11-26T12:00:00"])

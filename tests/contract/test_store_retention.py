@@ -16,6 +16,7 @@ from tms_db.history import Event, History, Run
 from tms_db.retention import Retention, delete_cycles, delete_grounds, delete_runs, delete_states
 from tms_db.terrain import GROUND, Terrain
 from tms_reason.errors import DbError
+from tms_soil.patches import EACH_HOUR
 from tms_work.cycle import Cycle
 
 NOW = datetime(2026, 1, 31, 6, 0, tzinfo=timezone.utc)
@@ -113,6 +114,15 @@ def test_old_snapshots_of_the_ground_go_and_the_newest_stays(shared_db: store.Db
     assert delete_grounds(shared_db, 7, NOW) == 2
     assert len(grounds.all(GROUND)) == 2 and len(grounds.all("static")) == 1
     assert shared_db["fs.chunks"].count_documents({}) == 3
+
+
+def test_hourly_grounds_go_with_the_recordings_that_need_them(shared_db: store.Db) -> None:
+    grounds = Terrain(shared_db)
+    for days, source in [(0.0, EACH_HOUR), (8.0, EACH_HOUR), (9.0, "survey.laz"), (10.0, EACH_HOUR)]:
+        facts = {"taken_at": (NOW - timedelta(days=days)).isoformat(), "source": source}
+        grounds.put(GROUND, GROUND, b"heights", facts)
+    assert delete_grounds(shared_db, 7, NOW, EACH_HOUR) == 2
+    assert {file.more["source"] for file in grounds.all(GROUND)} == {EACH_HOUR, "survey.laz"}
 
 
 def test_the_index_is_used(shared_db: store.Db) -> None:

@@ -15,7 +15,7 @@ from earth_rig import dig_poses, model_of, moved, reports, soils
 from tms_ground import snapshots, watching
 from tms_ground.reasons import GroundFromFuture
 from tms_ground.settings import Ground
-from tms_ground.snapshots import END_OF_DAY, PERIOD, READ, SERVICE, WRITE, Snapshots
+from tms_ground.snapshots import EACH_HOUR, END_OF_DAY, PERIOD, READ, SERVICE, WRITE, Snapshots
 from tms_ground.watching import GroundWatch
 from tms_machine.frames import FramePose
 from tms_reason.errors import RosError
@@ -161,6 +161,18 @@ def test_the_day_is_closed_with_a_snapshot_of_what_machines_did(site: Site) -> N
         site.look()
     ((_, ground, source),) = site.stored
     assert source == END_OF_DAY and np.allclose(ground.z, site.z, atol=1e-6)
+
+
+def test_each_hour_it_is_stored_if_machines_have_changed_it(site: Site) -> None:
+    site.look()
+    site.dig()
+    site.look(minutes=59)
+    assert not site.stored
+    for _ in range(2):
+        site.look(minutes=1)
+    assert [source for _, _, source in site.stored] == [EACH_HOUR]
+    site.look(minutes=60)
+    assert len(site.stored) == 1, "nothing has changed"
 
 
 def test_ours_does_not_blur_the_ground(site: Site) -> None:

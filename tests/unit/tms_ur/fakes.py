@@ -2,7 +2,7 @@
 
 import asyncio
 import threading
-from datetime import datetime, timezone
+from datetime import datetime, timedelta, timezone
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +16,7 @@ from tms_config.config import CONFIGS, Site, load_site
 from tms_config.models import MachineModel
 from tms_config.site_file import Console, SiteFile
 from tms_config.yaml_file import parse
+from tms_db.reasons import GroundNotThere
 from tms_decision.reasons import SoftwareStop
 from tms_reason.errors import TmsError
 from tms_reason.reason import Foreign, Reason
@@ -157,6 +158,15 @@ class FakeSiteClient:
     def ground(self, cells: int) -> Ground:
         self._called("ground", cells)
         return Ground(cell=10.0, rows=1, columns=2, heights=[1.25, None], design=[0.5, None])
+
+    def ground_at(self, time: datetime, cells: int) -> Ground:
+        """One was kept an hour before noon, and one 5 s after it."""
+        self._called("ground_at", time, cells)
+        first, second = NOON - timedelta(hours=1), NOON + timedelta(seconds=5)
+        if time < first:
+            raise TmsError(GroundNotThere("last"), "GROUND_NOT_THERE")
+        taken, after = (first, second) if time < second else (second, None)
+        return Ground(cell=10.0, rows=1, columns=2, heights=[0.75, None], taken_at=taken, next_at=after)
 
     def sensing(self) -> Sensing:
         facts = {"name": "pile", "topic": "/pile", "state": "alive", "hz": 1.0, "hz_expected": None, "age": 0.5}

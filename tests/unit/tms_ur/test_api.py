@@ -497,6 +497,15 @@ def test_the_ground_of_a_site_that_keeps_one(site_client: FakeSiteClient) -> Non
     assert site_client.calls == [("ground", 500)]
 
 
+def test_the_ground_of_a_moment(client: Client, site_client: FakeSiteClient) -> None:
+    found = client.get("/api/ground?at=2026-01-31T21:00:01%2B09:00").json()
+    assert found["heights"] == [0.75, None] and found["taken_at"] < found["next_at"]
+    assert site_client.calls == [("ground_at", NOON + timedelta(seconds=1), 40_000)]
+    gone = client.get("/api/ground?at=1999-01-01T00:00:00Z")
+    assert (gone.status_code, gone.json()["code"]) == (404, "GROUND_NOT_THERE")
+    assert client.get("/api/ground?at=2026-01-31T21:00:01").status_code == 422, "a time without a zone"
+
+
 def test_resume_or_abandon_an_interrupted_run(client: Client, site_client: FakeSiteClient) -> None:
     assert client.get("/api/runs/r-1/resume").json() == {"task_id": 4, "done": ["dig"], "next": ["swing"]}
     assert client.post("/api/runs/r-1/resume", json={}).json() == {"run_id": "r-1"}

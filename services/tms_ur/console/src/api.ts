@@ -1162,6 +1162,16 @@ export interface components {
              * @default []
              */
             design: (number | null)[];
+            /**
+             * Taken At
+             * @description when it was so; null: now
+             */
+            taken_at?: string | null;
+            /**
+             * Next At
+             * @description when the next ground was stored; null: none, or now
+             */
+            next_at?: string | null;
         };
         /**
          * Host
@@ -4448,6 +4458,8 @@ export interface operations {
             query?: {
                 /** @description about how many at most */
                 cells?: number;
+                /** @description the last one kept until then; none: of now */
+                at?: string | null;
             };
             header?: never;
             path?: never;
@@ -4475,6 +4487,15 @@ export interface operations {
             };
             /** @description log in first */
             401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description there is no such thing */
+            404: {
                 headers: {
                     [name: string]: unknown;
                 };

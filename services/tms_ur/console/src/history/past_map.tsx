@@ -8,8 +8,10 @@ import { useView } from "../map/use_view";
 import { fitted } from "../map/view";
 import type { Recording, State } from "../models";
 import { get } from "../server";
+import { dateTime } from "../texts";
 import { useList } from "../use_list";
 import { machinesAt, trailsAt, wayOf } from "./recording";
+import { type Kept, useGroundThen } from "./use_ground_then";
 
 const Space = lazy(() => import("../map/space/space"));
 const TYPICAL = { width: 1280, height: 500 }; // px, where the map from above has not been shown yet
@@ -38,6 +40,7 @@ export function PastMap({ recording, seconds }: Props) {
     const bodies = new Map(site?.machines.map((one) => [one.name, one]));
     return { state, bodies, areas: areasOf(enabled), records: [], trails: trailsAt(recording, seconds) };
   }, [recording, seconds, site, enabled]);
+  const kept = useGroundThen(seconds * 1000, inSpace);
   const { view, size, zoom, fit } = useView(box, ways, undefined, nothing, nothing);
   if (ways.length === 0) {
     return null;
@@ -49,7 +52,7 @@ export function PastMap({ recording, seconds }: Props) {
           {t(inSpace ? "map_2d" : "map_3d")}
         </button>
         {!inSpace && <Zooms zoom={zoom} fit={fit} />}
-        {inSpace && <span className="small">{t("ground_of_now")}</span>}
+        {inSpace && kept && <GroundNote kept={kept} />}
       </div>
       {/* biome-ignore lint/a11y/noNoninteractiveTabindex: arrow keys move the map */}
       <section id="map_box" className="mapbox past" hidden={inSpace} ref={box} tabIndex={0} aria-label={t("map_keys")}>
@@ -58,10 +61,30 @@ export function PastMap({ recording, seconds }: Props) {
       {inSpace && site && (
         <section id="space_box" className="mapbox past" aria-label={t("map_3d")}>
           <Suspense>
-            <Space scene={scene} view={view ?? fitted(ways, TYPICAL)} follow="" design={false} />
+            <Space
+              scene={scene}
+              view={view ?? fitted(ways, TYPICAL)}
+              follow=""
+              ground={kept?.ground ?? null}
+              design={false}
+            />
           </Suspense>
         </section>
       )}
     </>
+  );
+}
+
+/** When the ground was as it is shown. */
+function GroundNote({ kept: { ground } }: { kept: Kept }) {
+  const { t } = useTranslation();
+  if (ground !== null && (ground.rows ?? 0) === 0) {
+    return null; // the site keeps none
+  }
+  const text = ground === null ? t("ground_unread") : t("ground_of_now");
+  return (
+    <span id="ground_note" className="small">
+      {ground?.taken_at ? t("ground_of_then", { time: dateTime(ground.taken_at) }) : text}
+    </span>
   );
 }

@@ -14,6 +14,7 @@ import type { Flat } from "./outline";
 import { Picture, type Scene } from "./picture";
 import { PlaceForm } from "./place_form";
 import { trailsOf } from "./trails";
+import { useGround } from "./use_ground";
 import { useView } from "./use_view";
 import { fitted, gridStep } from "./view";
 
@@ -46,6 +47,7 @@ export function SiteMap({ state, bodies, inSpace, picking }: Props) {
     const places = placesOf(records ?? [], state.runs).filter((one) => all || one.goal);
     return { state, bodies, areas, records: places, trails: trailsOf(state.machines) };
   }, [state, bodies, areas, records, all]);
+  const ground = useGround(inSpace);
   const place = state.machines.find((one) => one.name === follow)?.place;
   // nothing is fitted before the areas are known: the view is not to jump when they come
   const known = enabled !== null || error !== null;
@@ -94,7 +96,7 @@ export function SiteMap({ state, bodies, inSpace, picking }: Props) {
       {eye && inSpace && (
         <section id="space_box" className="mapbox" aria-label={t("map_3d")}>
           <Suspense>
-            <Space scene={scene} view={eye} follow={follow} design={design} />
+            <Space scene={scene} view={eye} follow={follow} ground={ground} design={design} />
           </Suspense>
         </section>
       )}

@@ -3,22 +3,19 @@
 import { useEffect, useRef, useState } from "react";
 import { useTranslation } from "react-i18next";
 import type { Ground } from "../../models";
-import { repeated } from "../../repeated";
-import { get } from "../../server";
 import type { Scene } from "../picture";
 import type { View } from "../view";
 import { Stage } from "./stage";
-
-const EVERY = 10_000; // ms between two looks at the ground
 
 interface Props {
   scene: Scene;
   view: View; // of the map: there it begins
   follow: string;
+  ground: Ground | null; // null: not known yet
   design: boolean;
 }
 
-export default function Space({ scene, view, follow, design }: Props) {
+export default function Space({ scene, view, follow, ground, design }: Props) {
   const { t } = useTranslation();
   const canvas = useRef<HTMLCanvasElement>(null);
   const names = useRef<HTMLDivElement>(null);
@@ -40,12 +37,12 @@ export default function Space({ scene, view, follow, design }: Props) {
     sized.observe(element);
     return () => sized.disconnect();
   }, [there]);
-  const grounded = useGround(there);
   useEffect(() => {
-    if (grounded > 0) {
+    if (ground !== null) {
+      there?.setGround(ground);
       there?.showDesign(design);
     }
-  }, [there, design, grounded]);
+  }, [there, ground, design]);
   return (
     <>
       <canvas ref={canvas} id="space" role="img" aria-label={t("map_3d_label")} />
@@ -61,21 +58,4 @@ function begin(canvas: HTMLCanvasElement | null, names: HTMLElement | null, view
   } catch {
     return null; // the browser has no WebGL
   }
-}
-
-/** Gives the stage the ground, again and again; returns how often that was. */
-function useGround(stage: Stage | null): number {
-  const [times, setTimes] = useState(0);
-  useEffect(() => {
-    if (stage === null) {
-      return;
-    }
-    const took = (ground: Ground) => {
-      stage.setGround(ground);
-      setTimes((before) => before + 1);
-    };
-    const failed = () => undefined; // it stays as it was; the next look may be luckier
-    return repeated(() => get("/api/ground"), took, failed, EVERY);
-  }, [stage]);
-  return times;
 }
