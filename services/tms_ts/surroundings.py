@@ -61,12 +61,15 @@ class PreflightContext:
         sensing: SensingInputs,
         problem: Callable[[str], Reason | None],
         writers: Callable[[str, str], bool],
+        motions: bool,
     ) -> None:
+        """`motions`: the planners are asked about them, for two seconds at most."""
         self._app, self._sensing, self.problem, self._writers = app, sensing, problem, writers
         answer = ask(app.ros, ListParameters, "/tms/db/list_parameters", ListParameters.Request(), DB_LIMIT)
         now = unix_time()
         self._found_by = monotonic() + DISCOVERY_LIMIT
         self._records = {(record.model_name, record.record_name): _stored(record, now) for record in answer.records}
+        self._motions = motions
         self._rehearsals = Rehearsals(app, lambda *name: self._records[name].values if name in self._records else {})
 
     def record(self, machine: str, record: str) -> StoredRecord | None:
@@ -99,7 +102,7 @@ class PreflightContext:
         return self._app.site.model_of(machine).subtask(subtask).max_age
 
     def refusal(self, machine: str, subtask: str, record: str, inputs: Inputs) -> Refusal | None:
-        return self._rehearsals.refusal(machine, subtask, record, inputs)
+        return self._rehearsals.refusal(machine, subtask, record, inputs) if self._motions else None
 
     def unplanned(self) -> list[Reason]:
         return self._rehearsals.unplanned()

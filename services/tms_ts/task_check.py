@@ -40,7 +40,8 @@ class TaskCheck:
             xml = request.xml if request.task_id == 0 else self.task(request.task_id).task_sequence
             report = bt.check(xml, templates=self.template)
             if report.ok:
-                found = self._preflight(bt.load(xml, world=None, templates=self.template), present=True)
+                tree = bt.load(xml, world=None, templates=self.template)
+                found = self._preflight(tree, present=True, motions=not request.without_motions)
                 response.errors = list(map(to_line, found.errors))
                 response.warnings = list(map(to_line, found.warnings))
             else:
@@ -79,7 +80,7 @@ class TaskCheck:
 
     def before_run(self, tree: bt.Tree) -> Findings:
         """Preflight of a run that is about to begin; whether its machines may move now is checked later."""
-        return self._preflight(tree, present=False)
+        return self._preflight(tree, present=False, motions=True)
 
     def refuse_latched(self, machines: list[str]) -> None:
         """Refuse to begin a run unless its machines are armed and free.
@@ -92,11 +93,12 @@ class TaskCheck:
             if found is not None:
                 raise not_free(found)
 
-    def _preflight(self, tree: bt.Tree, present: bool) -> Findings:
+    def _preflight(self, tree: bt.Tree, present: bool, motions: bool) -> Findings:
         """`present`: also report why machines may not move now; a run is refused for that later."""
         problem = self._problem if present else _no_problem
         site = self._app.site
-        found = preflight(tree, site, PreflightContext(self._app, self._sensing, problem, self._runs.writes))
+        around = PreflightContext(self._app, self._sensing, problem, self._runs.writes, motions)
+        found = preflight(tree, site, around)
         if leaves_of(tree):
             about = check_places(tree, site, self._known_places(), self._runs.orders())
             found.errors += about.errors

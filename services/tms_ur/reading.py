@@ -196,8 +196,12 @@ def _tasks(app: FastAPI, client: "SiteClient", site: Site) -> None:
 
     @app.post("/api/tasks/check", summary="Check a tree; stores and runs nothing",
               responses=problems(403, 409, 411, 413, 415, 503))  # fmt: skip
-    def check(given: Xml, person: Viewer) -> Checked:
-        errors, warnings = client.check_task(given.xml)
+    def check(
+        given: Xml,
+        person: Viewer,
+        motions: Annotated[bool, Query(description="plan the motions, too: that takes up to 2 s")] = True,
+    ) -> Checked:
+        errors, warnings = client.check_task(given.xml, motions)
         return Checked(errors=list(map(_finding, errors)), warnings=list(map(_finding, warnings)))
 
     @app.post("/api/tasks/{task_id}/diff", summary="What differs between the stored tree and a given one",

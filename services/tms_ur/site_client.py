@@ -194,9 +194,9 @@ class SiteClient(RunCalls):
 
     # the scheduler
 
-    def check_task(self, xml: str) -> tuple[list[Reason], list[Reason]]:
-        """Errors and warnings of a tree; nothing is stored and nothing runs."""
-        answer = self._ask(CheckTask, "/tms/check_task", xml=xml)
+    def check_task(self, xml: str, motions: bool = True) -> tuple[list[Reason], list[Reason]]:
+        """Errors and warnings of a tree, with or without its motions; nothing is stored and nothing runs."""
+        answer = self._ask(CheckTask, "/tms/check_task", xml=xml, without_motions=not motions)
         return list(map(wire.known, answer.errors)), list(map(wire.known, answer.warnings))
 
     # machines

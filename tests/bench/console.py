@@ -66,7 +66,6 @@ def measure() -> Iterable[Figure]:
         domain, folder = stack.enter_context(claimed_domain()), Path(stack.enter_context(tempfile.TemporaryDirectory()))
         yield space(folder)  # before the mesh takes processor time
         yield from trees(folder)
-        yield findings(folder)
         port = ports_of(domain)
         site = folder / "site.yaml"
         site.write_text(yaml.safe_dump(site_data(domain, port)))
@@ -74,8 +73,10 @@ def measure() -> Iterable[Figure]:
         stack.callback(mesh.tms, "down")
         mesh.tms("up")
         mesh.arm()
-        runs = [_start(mesh, folder, number) for number in range(RUNS)]
+        mesh.tms("param", "load", "configs/parameters/zx200.yaml")
         address = f"http://127.0.0.1:{port + 90}"
+        yield findings(mesh, folder, address, PING)
+        runs = [_start(mesh, folder, number) for number in range(RUNS)]
         yield from _pages(address, runs[0])
         yield _consoles(mesh, port + 90)
         yield _press(port + 90)
@@ -102,14 +103,14 @@ def _page(page: Page, address: str, run: str) -> Iterator[Figure]:
     floor = _opened(page, f"{address}/icon.svg", "svg")
     sizes.clear()
     usable = _opened(page, f"{address}/#board", "#list_tasks li")
-    yield Figure("first page", "KB", sum(sizes) / 1000, 300.0, (sizes[0] or 1) / 1000)
+    yield Figure("first page", "KB", sum(sizes) / 1000, 150.0, (sizes[0] or 1) / 1000)
     yield Figure("first page usable", "ms", usable, 700.0, floor, usual_floor=60.0)
     page.goto(f"{address}/#tree/{run}")
     page.wait_for_selector("#tree_box [data-state=running]")
     page.evaluate(WATCH)
     time.sleep(SECONDS)
     delays = sorted(_delays(page.evaluate("window.seen"), _journal(address, run)))
-    yield Figure("node to pixel p95", "ms", delays[int(len(delays) * 0.95)] * 1000, 200.0, page.evaluate(PING, ROUNDS),
+    yield Figure("node to pixel p95", "ms", delays[int(len(delays) * 0.95)] * 1000, 150.0, page.evaluate(PING, ROUNDS),
                  usual_floor=20.0)  # fmt: skip
 
 

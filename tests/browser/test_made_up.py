@@ -1,6 +1,7 @@
 """What the pages make of states that a test makes up: silence, old places, long journals; no ROS, no mesh."""
 
 import re
+import threading
 from collections.abc import Iterator
 from datetime import timedelta
 from pathlib import Path
@@ -400,9 +401,30 @@ def test_a_file_is_stored_as_a_template_under_its_name(page: Page, address: str,
     assert [call for call in yard.calls if call[0] == "add_template"] == [("add_template", "Dig", text, "", True)]
 
 
-def structural(xml: str) -> tuple[list[Reason], list[Reason]]:
+def structural(xml: str, motions: bool = True) -> tuple[list[Reason], list[Reason]]:
     """The check of a tree as far as the tree alone tells."""
     return [error.reason for error in check(xml).errors], []
+
+
+def test_motions_are_checked_once_nothing_changes(
+    page: Page, address: str, yard: Yard, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """To plan them takes seconds: findings without them come at once."""
+    may_end, asked = threading.Event(), list[bool]()
+
+    def slow(xml: str, motions: bool = True) -> tuple[list[Reason], list[Reason]]:
+        asked.append(motions)
+        return ([Foreign("out of reach")], []) if motions and may_end.wait(60) else structural(xml)
+
+    monkeypatch.setattr(yard, "check_task", slow)
+    page.goto(f"{address}/#editor/4")
+    findings = page.get_by_role("region", name="Check")
+    expect(findings).to_contain_text("The motions of the arms are still being planned.")
+    expect(findings).not_to_contain_text("out of reach")
+    may_end.set()
+    expect(findings).to_contain_text("out of reach")
+    expect(findings).not_to_contain_text("planned")
+    assert (asked[0], asked[-1]) == (False, True)
 
 
 DRAWN = """        <Sequence>

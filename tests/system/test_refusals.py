@@ -3,9 +3,11 @@
 import json
 from pathlib import Path
 
+import httpx
 import pytest
 
 from conftest import Mesh
+from tms_config.config import load_site
 
 pytestmark = pytest.mark.system
 
@@ -67,6 +69,21 @@ def test_records_that_do_not_fit(mesh: Mesh, tmp_path: Path, fields: list[str], 
         assert said in run_tree(mesh, tmp_path, tree("bad"))
     finally:
         mesh.tms("param", "rm", "zx200/bad")
+
+
+def test_motions_are_checked_on_demand(mesh: Mesh) -> None:
+    """They take time; the editor checks without them while somebody draws."""
+    fields = ["position_with_angle=1", "x=50.0", "y=0.0", "z=0.0", "theta_w=1.0"]
+    mesh.tms("param", "set", "zx200/far", "--create", "--type", "static", *fields)
+    address = f"http://127.0.0.1:{load_site(str(mesh.site)).file.ports.console}/api/tasks/check"
+    try:
+        whole = httpx.post(address, json={"xml": tree("far")}, timeout=60).json()
+        quick = httpx.post(f"{address}?motions=false", json={"xml": tree("far")}, timeout=60).json()
+    finally:
+        mesh.tms("param", "rm", "zx200/far")
+    (found,) = whole["errors"]
+    assert "m too far" in found["reason"]["text"]["en"]
+    assert quick["errors"] == []
 
 
 @pytest.mark.parametrize(

@@ -185,8 +185,8 @@ class FakeSiteClient:
     def remove_task(self, task_id: int) -> None:
         self._called("remove_task", task_id)
 
-    def check_task(self, xml: str) -> tuple[list[Reason], list[Reason]]:
-        self._called("check_task", xml)
+    def check_task(self, xml: str, motions: bool = True) -> tuple[list[Reason], list[Reason]]:
+        self._called("check_task", xml, motions)
         return [WrongLine(7, "Dig")], [Foreign("nobody writes flag F")]
 
     def set_parameter(

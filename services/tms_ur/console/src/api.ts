@@ -4187,7 +4187,10 @@ export interface operations {
     };
     check_api_tasks_check_post: {
         parameters: {
-            query?: never;
+            query?: {
+                /** @description plan the motions, too: that takes up to 2 s */
+                motions?: boolean;
+            };
             header?: never;
             path?: never;
             cookie?: never;

@@ -32,11 +32,12 @@ export async function get<Path extends With<"get">>(
   return (await ask(filled(path, places) + (query && `?${query}`))) as Answer<paths[Path]["get"]>;
 }
 
-/** Gives a command. */
+/** Gives a command; `query` without its question mark. */
 export async function post<Path extends With<"post">>(
   path: Path,
   body: Body<paths[Path]["post"]>,
   places: Places = {},
+  query = "",
 ): Promise<Answer<paths[Path]["post"]>> {
-  return (await ask(filled(path, places), body)) as Answer<paths[Path]["post"]>;
+  return (await ask(filled(path, places) + (query && `?${query}`), body)) as Answer<paths[Path]["post"]>;
 }

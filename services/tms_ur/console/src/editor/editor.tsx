@@ -121,6 +121,7 @@ export function Editor({ rest, site, target, onRecord }: Props) {
           <section id="ed_findings" aria-label={t("check")} aria-live="polite" aria-busy={!check.fresh}>
             <Problem error={check.error} />
             {check.found && <Findings found={check.found} onLine={toLine} />}
+            {check.planning && <p className="small">{t("check_planning")}</p>}
           </section>
           <SaveForm target={target} text={text} changed={isChanged(drafts)} onSaved={saved} />
         </div>

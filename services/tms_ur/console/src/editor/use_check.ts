@@ -1,10 +1,13 @@
 // The check of what is drawn, after each change; the findings stay at their nodes until the next ones come.
+// To plan the motions takes seconds: the check with them comes once nothing has changed for a moment.
 import { useEffect, useMemo, useRef, useState } from "react";
 import type { Checked, Finding } from "../models";
 import { post } from "../server";
 import { type At, linesOf, treesOf } from "./groot";
 import type { Types } from "./palette";
 import { XmlError } from "./xml";
+
+const PAUSE = 1000; // ms without a change
 
 export interface Marks {
   errors: Finding[];
@@ -15,6 +18,7 @@ export interface Check {
   found: Checked | null;
   error: Error | null; // why it could not be checked
   fresh: boolean; // it is of the text as it is now
+  planning: boolean; // the motions of that text are not planned yet
   lines: Map<number, At>; // of the checked text
   marks: Map<string, Marks>; // by keyOf
 }
@@ -61,17 +65,21 @@ interface Checking {
   left: boolean; // nobody waits any more
 }
 
-/** Asks for one check after another until the newest text is checked: those in between are left out. */
+function checked(text: string, motions: boolean): Promise<Answer> {
+  const asked = { found: null, error: null, text };
+  return post("/api/tasks/check", { xml: text }, {}, `motions=${motions}`).then(
+    (found): Answer => ({ ...asked, found }),
+    (error: Error): Answer => ({ ...asked, error }),
+  );
+}
+
+/** Asks for one quick check after another until the newest text is checked: those in between are left out. */
 async function follow(now: Checking, tell: (checked: Answer) => void) {
   now.busy = true;
   let text: string | null = null;
   while (text !== now.newest && !now.left) {
     text = now.newest;
-    const asked = { found: null, error: null, text };
-    const answer = await post("/api/tasks/check", { xml: text }).then(
-      (found): Answer => ({ ...asked, found }),
-      (error: Error): Answer => ({ ...asked, error }),
-    );
+    const answer = await checked(text, false);
     if (!now.left) {
       tell(answer);
     }
@@ -80,7 +88,8 @@ async function follow(now: Checking, tell: (checked: Answer) => void) {
 }
 
 export function useCheck(text: string, types: Types): Check {
-  const [checked, setChecked] = useState<Answer | null>(null);
+  const [quick, setQuick] = useState<Answer | null>(null);
+  const [whole, setWhole] = useState<Answer | null>(null);
   const checking = useRef<Checking>({ newest: text, busy: false, left: false });
   useEffect(() => {
     const now = checking.current;
@@ -92,13 +101,27 @@ export function useCheck(text: string, types: Types): Check {
   useEffect(() => {
     checking.current.newest = text;
     if (!checking.current.busy) {
-      follow(checking.current, setChecked);
+      follow(checking.current, setQuick);
     }
   }, [text]);
+  const fresh = quick?.text === text;
+  useEffect(() => {
+    if (!fresh) {
+      return;
+    }
+    let left = false;
+    const take = (answer: Answer) => left || setWhole(answer);
+    const timer = window.setTimeout(() => checked(text, true).then(take), PAUSE);
+    return () => {
+      left = true;
+      clearTimeout(timer);
+    };
+  }, [text, fresh]);
+  const answer = whole?.text === quick?.text ? whole : quick;
   const shown = useMemo(() => {
-    const lines = checked === null ? new Map<number, At>() : linesIn(checked.text, types);
-    const found = checked?.found ?? null;
-    return { found, error: checked?.error ?? null, lines, marks: found === null ? new Map() : marksOf(found, lines) };
-  }, [checked, types]);
-  return { ...shown, fresh: checked?.text === text };
+    const lines = answer === null ? new Map<number, At>() : linesIn(answer.text, types);
+    const found = answer?.found ?? null;
+    return { found, error: answer?.error ?? null, lines, marks: found === null ? new Map() : marksOf(found, lines) };
+  }, [answer, types]);
+  return { ...shown, fresh, planning: fresh && whole?.text !== text };
 }
