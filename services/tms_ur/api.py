@@ -8,6 +8,7 @@ from http import HTTPStatus
 from pathlib import Path as File
 from typing import TYPE_CHECKING
 
+import anyio
 import anyio.to_thread
 import structlog
 from fastapi import FastAPI, Request
@@ -81,16 +82,18 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
 def _describe(app: FastAPI) -> None:
     """Serve `/openapi.json`, which is made once: any client may ask for it, as often as it likes.
 
-    At the first request, in a thread: it takes as long as to make all the rest of the application.
+    At the first request, in a thread of its own, not in one of those that a press of the stop needs: it takes as long
+    as to make all the rest of the application.
     """
+    own = anyio.CapacityLimiter(1)
 
     @cache
     def text() -> str:
         return json.dumps(app.openapi(), ensure_ascii=False, separators=(",", ":"))
 
     @app.get("/openapi.json", include_in_schema=False)
-    def document() -> Response:
-        return Response(text(), media_type="application/json")
+    async def document() -> Response:
+        return Response(await anyio.to_thread.run_sync(text, limiter=own), media_type="application/json")
 
 
 # errors

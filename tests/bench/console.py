@@ -165,7 +165,7 @@ def _press(port: int) -> Figure:
     """The longest of some presses of the stop, answered with the proof that the machine stands."""
     floor = _most(port)
     with hanging(port, HANGING):
-        return Figure(f"press beside {HANGING} hanging", "ms", _most(port), 1000.0, floor, usual_floor=50.0)
+        return Figure(f"press beside {HANGING} hanging", "ms", _most(port), 1000.0, floor, usual_floor=250.0)
 
 
 def _most(port: int) -> float:

@@ -118,9 +118,8 @@ def _abandoned(site: Site, run: Execution, now: float) -> None:
     """A run does not wait for the answer of a process that is gone."""
     for unit, _, life, key in run.orders.values() if run.core.phase is Phase.RUNNING else ():
         relay = unit.relays[SUBTASK]
-        told = relay.silent_at > FOUND and not 0.0 < site.host.silent_at < FOUND  # else nobody knows which life it was
         waits = min(relay.worked_for(), site.host.worked_for(), site.scheduler.worked_for(), now - run.hangs)
-        if relay.life != life and waits > GIVEN_UP and told:
+        if relay.life != life and waits > GIVEN_UP:
             raise Violation(f"{run.run_id} waits for {key}, whose process is gone for {waits:.1f} s")
 
 

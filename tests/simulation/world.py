@@ -81,7 +81,6 @@ class Process:
     thaws: float = 0.0  # frozen until then
     waiting: list[Step] = field(default_factory=list)
     lost_at: float = 0.0  # when it was killed or frozen last
-    silent_at: float = 0.0  # when the life that was killed last said its last word
     up_at: float = 0.0  # when it began to work last
     begun_at: float = 0.0  # when its life began
 
@@ -127,7 +126,6 @@ class Process:
 
     def kill(self) -> None:
         """Kill it; the caller starts it again."""
-        self.silent_at = self.lost_at if self.frozen() else self.world.now
         self.alive, self.waiting = False, []
         self.lost_at = self.world.now
         self.world.tell(self.name, "is killed")

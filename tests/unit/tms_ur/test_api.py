@@ -1,14 +1,17 @@
 """Every endpoint, every error, and what stands before them, with a site that is a fake."""
 
+import asyncio
 import csv
 import inspect
 import io
 import math
+import threading
 from collections import Counter
 from collections.abc import AsyncIterator
 from datetime import datetime, timedelta
 from pathlib import Path
 
+import httpx
 import pytest
 from builtin_interfaces.msg import Time
 from fastapi import FastAPI
@@ -24,6 +27,7 @@ from tms_reason.errors import TmsError
 from tms_reason.reason import Foreign
 from tms_reason.wire import to_line
 from tms_ur import messages
+from tms_ur.api import WORKERS
 from tms_ur.models import ActiveRun, Event, Host, Joint, Machine, Process
 from tms_ur.reason_view import view
 from tms_ur.recording_client import Asked
@@ -708,6 +712,26 @@ def test_the_document_is_made_once_when_it_is_asked_for(
     assert made == []
     first, second = (client.get("/openapi.json") for _ in range(2))
     assert first.content == second.content and len(made) == 1
+
+
+def test_it_is_made_once_for_all_who_wait_and_nobody_else_waits(
+    client: Client, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """To make it in all the threads at once kept a press of the stop for 1.4 s."""
+    may_end, made = threading.Event(), list[bool]()
+    monkeypatch.setattr(FastAPI, "openapi", lambda _: made.append(may_end.wait(60)) or {"made": len(made)})
+
+    async def ask() -> list[httpx.Response]:
+        transport = httpx.ASGITransport(client.app, client=("127.0.0.1", 123))
+        async with httpx.AsyncClient(transport=transport, base_url=HERE) as asked:
+            documents = [asyncio.create_task(asked.get("/openapi.json")) for _ in range(3 * WORKERS)]
+            tasks = await asyncio.wait_for(asked.get("/api/tasks"), 30)
+            may_end.set()
+            return [tasks, *await asyncio.gather(*documents)]
+
+    tasks, *documents = asyncio.run(ask())
+    assert tasks.status_code == 200
+    assert [one.json() for one in documents] == [{"made": 1}] * 3 * WORKERS
 
 
 def test_every_endpoint_is_in_the_document(client: Client) -> None:
