@@ -1,4 +1,7 @@
-"""`make pictures`: every page of the console of the running demo, as deploy/pictures/<page>.png, some in Japanese, too.
+"""`make pictures`: every page of the console of the running demo.
+
+deploy/pictures/<page>.png are those of README.md and README.ja.md. .state/pictures has all pages in both languages and
+three sizes, each page as long as it is: to look at, after a change of the console.
 
 The task of the newest run that succeeded is run once more, so that there is something to see on the pages of what goes
 on now. It is left to end by itself.
@@ -23,7 +26,12 @@ if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
 
 PICTURES = PROJECT / "deploy" / "pictures"
+ALL = PROJECT / ".state" / "pictures"
 SIZE = ViewportSize(width=1280, height=800)  # px
+SIZES = {  # px
+    "phone": ViewportSize(width=390, height=844), "desk": SIZE, "wall": ViewportSize(width=1920, height=1080),
+}  # fmt: skip
+MORE = ("map/3d", "tasks/{task}", "editor/{task}")  # places that the navigation has no link to
 LARGEST = 150_000  # bytes of a picture
 LIMIT = 60.0  # s for whatever must happen at all
 RUN_LIMIT = 600.0  # s for the run to end
@@ -34,10 +42,12 @@ SHOWN = {
     "board": ("#list_active li", "#list_tasks li", "#list_machines .card"),
     "tree": ("#tree_box [data-state=running]",),
     "map": ("#map_box [data-machine]", "#arms svg"),
+    "map/3d": ("#space[data-pictures]",),
     "history": ("#list_history tr", "#past [data-path]"),
     "data": ("#list_records tr", "#list_sensing tr"),
     "system": ("#list_processes tr",),
     "tasks": ("#list_stored tr",),
+    "editor": ("#page [data-path]",),
 }
 
 
@@ -75,7 +85,7 @@ def open_page(page: Page, url: str, place: str) -> None:
     name = place.partition("/")[0]
     page.goto(f"{url}/#{place}")
     page.wait_for_selector("#connecting", state="hidden")
-    for selector in (f"#page[data-page={name}]", *SHOWN.get(name, ("#page h2",))):
+    for selector in (f"#page[data-page={name}]", *SHOWN.get(place, SHOWN.get(name, ("#page h2",)))):
         try:
             page.wait_for_selector(selector, state="attached")
         except TimeoutError as error:
@@ -87,26 +97,35 @@ def keep(png: bytes, file: Path) -> None:
     with Image.open(BytesIO(png)) as picture:
         picture.convert("RGB").quantize().save(file, optimize=True)
     size = file.stat().st_size
-    if size > LARGEST:
+    if size > LARGEST and file.is_relative_to(PICTURES):
         raise NoPictures(f"{file} has {size} bytes, more than {LARGEST}")
     print(f"{file.relative_to(PROJECT)} {size / 1000:.0f} KB")
 
 
-def take_all(browser: Browser, url: str, past: str) -> None:
-    """All pages that the console links to in English, some in Japanese; then wait until the run is over."""
-    PICTURES.mkdir(exist_ok=True)
-    pages = {ending: browser.new_page(viewport=SIZE, locale=locale) for ending, locale in LOCALES.items()}
-    english = pages[""]
+def take_all(browser: Browser, url: str, past: str, task: int) -> None:
+    """All places in each language and size; then wait until the run is over."""
+    pages = {(ending, size): browser.new_page(viewport=SIZES[size], locale=locale)
+             for ending, locale in LOCALES.items() for size in SIZES}  # fmt: skip
     for page in pages.values():
         page.set_default_timeout(LIMIT * 1000)
         page.goto(url)
-        page.wait_for_selector("#pages a")
-    for name in english.locator("#pages a").evaluate_all("links => links.map((link) => link.hash.slice(1))"):
-        for ending, page in pages.items():
-            if page is english or name in JAPANESE:
-                open_page(page, url, f"history/{past}" if name == "history" else name)
-                keep(page.screenshot(), PICTURES / f"{name}{ending}.png")
+        page.wait_for_selector("#pages a", state="attached")
+    english = pages["", "desk"]
+    links = english.locator("#pages a").evaluate_all("links => links.map((link) => link.hash.slice(1))")
+    for place in [*links, *(one.format(task=task) for one in MORE)]:
+        for (ending, size), page in pages.items():
+            take(page, url, f"history/{past}" if place == "history" else place, ending, size)
     wait_for_end(english, url)
+
+
+def take(page: Page, url: str, place: str, ending: str, size: str) -> None:
+    """One place: as long as it is, and as README shows it."""
+    open_page(page, url, place)
+    name = place.partition("/")[0] if place.startswith("history") else place.replace("/", "_")
+    page.evaluate("scrollTo(0, 0)")  # else the header, which stays in sight, is in the middle of the picture
+    keep(page.screenshot(full_page=True), ALL / f"{name}.{size}{ending}.png")
+    if size == "desk" and "_" not in name and (not ending or name in JAPANESE):
+        keep(page.screenshot(), PICTURES / f"{name}{ending}.png")
 
 
 def wait_for_end(page: Page, url: str) -> None:
@@ -123,7 +142,9 @@ def main() -> int:
         done = finished_run(url)
         with chromium() as browser:
             start(url, done["task_id"])
-            take_all(browser, url, done["run_id"])
+            for folder in (PICTURES, ALL):
+                folder.mkdir(parents=True, exist_ok=True)
+            take_all(browser, url, done["run_id"], done["task_id"])
     except (NoPictures, TmsError) as error:
         print(error, file=sys.stderr)
         return 1

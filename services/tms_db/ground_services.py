@@ -1,14 +1,12 @@
 """Grounds over ROS, for tms:ground: it stores its own, and reads those that others have stored."""
 
-from datetime import datetime
-
 from tms_msg_ground.srv import ReadSnapshot, WriteSnapshot
 
 from tms_db import store
 from tms_db.answering import Answering
 from tms_db.ground import GroundSnapshots, chosen
-from tms_db.reasons import GroundNotHeights, GroundTime
-from tms_db.values import to_time
+from tms_db.reasons import GroundNotHeights
+from tms_db.values import date_of, to_time
 from tms_reason.errors import DbError
 from tms_runtime.app import App
 from tms_soil import patches
@@ -35,8 +33,8 @@ class GroundServices:
 
     def read(self, request: ReadSnapshot.Request, response: ReadSnapshot.Response) -> None:
         """Answer with a ground; where none was taken after the time that is asked for, with an empty `taken_at`."""
-        after = _time(request.after) if request.after else None
-        until = _time(request.until) if request.until else None
+        after = date_of(request.after) if request.after else None
+        until = date_of(request.until) if request.until else None
         known = [one for one in self._grounds.all() if after is None or one.taken_at > after]
         if after is not None and not known:
             return
@@ -46,13 +44,3 @@ class GroundServices:
         response.ground = patches.patch(self._grounds.read(found))
         response.ground.header.stamp = to_time(found.taken_at)
         response.taken_at, response.source = found.taken_at.isoformat(), found.source
-
-
-def _time(text: str) -> datetime:
-    try:
-        found = datetime.fromisoformat(text)
-    except ValueError as error:
-        raise DbError(GroundTime(text)) from error
-    if found.tzinfo is None:
-        raise DbError(GroundTime(text))
-    return found

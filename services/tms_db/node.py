@@ -28,6 +28,7 @@ from tms_db.task_text import MODELS
 from tms_db.tasks import Tasks
 from tms_db.template_services import TemplateServices
 from tms_db.terrain_services import TerrainServices
+from tms_db.work_services import WorkServices
 from tms_runtime.app import App
 
 
@@ -105,6 +106,7 @@ def start(app: App) -> None:
     GroundServices(app, db).offer(answering)
     PlaceServices(app, db, connection).offer()
     RecordingServices(db).offer(answering)
+    WorkServices(db).offer(answering)
     recorder = Recorder(app, db, connection)
     app.on_stop(recorder.stop)
     recorder.start()

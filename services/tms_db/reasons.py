@@ -195,7 +195,7 @@ class NoImageType(Reason, text="terrain type '{type}': an image is one of {types
 class GroundNotThere(Reason, text="there is no ground of '{time}': `tms ground list` shows what is stored"): time: str
 class GroundUnreadable(Reason, text="the ground of {time} is damaged: import its file again"): time: str
 class GroundNotHeights(Reason, text="that is no ground: {problem}"): problem: str
-class GroundTime(Reason, text="'{time}' is no time with a zone: write 2026-11-26T13:05:00+09:00"):
+class NoZone(Reason, text="'{time}' is no time with a zone: write 2026-11-26T13:05:00+09:00"):
     time: str
 class BadCycle(Reason, text="a cycle of work cannot be stored: {why}"): why: Reason
 class CycleUnreadable(Reason, text="the stored cycle {cycle} cannot be read: {why}"): cycle: str; why: Reason

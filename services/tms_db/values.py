@@ -7,9 +7,10 @@ from typing import Any
 from builtin_interfaces.msg import Time
 from rcl_interfaces.msg import Parameter
 
-from tms_db.reasons import FieldTwice, NoValueGiven
+from tms_db.reasons import FieldTwice, NoValueGiven, NoZone
 from tms_db.records import RESERVED, Value, bad
 from tms_machine import values
+from tms_reason.errors import DbError
 
 LAST_SECOND = 2**31 - 1  # of builtin_interfaces/Time
 
@@ -51,3 +52,18 @@ def from_time(time: Time) -> datetime:
     """Time as a date; the store keeps milliseconds."""
     milliseconds = time.nanosec // 1_000_000
     return datetime.fromtimestamp(time.sec, timezone.utc).replace(microsecond=milliseconds * 1000)
+
+
+def date_of(text: str) -> datetime:
+    """A date as ISO 8601 with its zone.
+
+    Raises:
+        DbError: NO_ZONE; it is none, or has no zone.
+    """
+    try:
+        found = datetime.fromisoformat(text)
+    except ValueError as error:
+        raise DbError(NoZone(text)) from error
+    if found.tzinfo is None:
+        raise DbError(NoZone(text))
+    return found

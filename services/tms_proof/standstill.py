@@ -51,6 +51,7 @@ class StandStill:
         self._angles: dict[str, float] = {}
         self._way = 0.0
         self._quiet_since = -INFINITE  # when our last goal ended: its last commands may still be on their way
+        self._sent_at = -INFINITE  # when our last goal left for the machine
         self._motion_at = -INFINITE  # when a motion was last seen ...
         self._evident_at = -INFINITE  # ... that no replayed record could hide
         self._doubted_at = -INFINITE  # when a source could not be believed although a stop was to be proven
@@ -171,6 +172,11 @@ class StandStill:
 
     # proof
 
+    def leaves(self, now: float) -> dict[str, float]:
+        """Note that a goal of ours leaves for the machine now; returns where its joints are [rad]."""
+        self._sent_at = self._quiet_since = now
+        return self.positions
+
     def commanded(self, now: float) -> None:
         """Note that a goal of ours moves the machine now."""
         self._quiet_since = now
@@ -186,7 +192,8 @@ class StandStill:
         """
         if self.trouble(begun) is not None:
             self._doubted_at = begun
-        visible = self._evident_at > begun - WORST or begun - self._quiet_since > self.dead_time
+        since = max(begun - WORST, self._sent_at + self.dead_time)  # before, it was the motion of the goal before
+        visible = self._evident_at > since or begun - self._quiet_since > self.dead_time
         immediate = strongest and self._facts.stops_at_once and visible
         wait, coming = (0.0, {}) if immediate else (self.dead_time, expected.to_come)
         expected = replace(expected, to_come={name: way for name, way in coming.items() if way > SEEN})

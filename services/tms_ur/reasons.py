@@ -55,6 +55,7 @@ class JournalCut(Reason, text="cut after {count} events",
 class TooManyConsoles(Reason, text="{most} consoles are connected already: close one of them"): most: int
 class Starting(Reason, text="task {task} is being started already"): task: int
 class RunNotBegun(Reason, text="the run did not begin within {limit}", action=LOGS): limit: Seconds; process: str
+class CyclesNotRead(Reason, text="a cycle of work cannot be read: {why}"): why: Reason
 class GroundNotRead(Reason, text="the ground of {time} cannot be read ({problem})"):
     time: str; problem: str
 class StartRefused(Reason, text="the scheduler did not take the task", action=LOGS): process: str

@@ -1,6 +1,6 @@
 """The API's side of ROS: blocking calls for worker threads, and topics that update the board."""
 
-from datetime import datetime
+from datetime import date, datetime
 from typing import Any
 
 from std_msgs.msg import String
@@ -55,6 +55,8 @@ from tms_ur.run_calls import CALL_LIMIT, RunCalls
 from tms_ur.scene_models import Scene, scene
 from tms_ur.watch_models import AreasChecked
 from tms_ur.watching import Watching
+from tms_ur.work_client import work
+from tms_ur.work_models import Work, WorkPlan
 
 PROCESS_LIMIT = 15.0  # s for a process to end and to be started
 
@@ -249,6 +251,10 @@ class SiteClient(RunCalls):
     def ground_at(self, time: datetime, cells: int) -> Ground:
         """The last ground that was kept until a time; a TmsError says why it is not told."""
         return ground_at(self._ros, time, cells)
+
+    def work(self, day: date, plan: WorkPlan | None) -> Work:
+        """What was moved on a day; a TmsError says why it is not told."""
+        return work(self._ros, day, plan)
 
     # processes
 

@@ -334,6 +334,25 @@ def test_the_cursor_of_a_run_goes_by_time(page: Page, address: str, yard: Yard) 
     expect(page.get_by_role("link", name="Link to this moment")).to_have_attribute("href", "#history/r-1/10.0")
 
 
+def test_the_work_of_a_day_is_beside_its_plan(page: Page, tmp_path: Path) -> None:
+    yard = Yard(ground={"area": [-10.0, -10.0, 10.0, 10.0], "plan": {"bank": 16.0, "loads": 4}})
+    yard.receive()
+    with serving(yard, tmp_path) as address:
+        page.goto(f"{address}/#work/2026-11-26")
+        expect(page.locator("[data-plan=bank_m3]")).to_contain_text("8.0 of 16.0 (50 %)")
+        expect(page.locator("[data-plan=truck_loads]")).to_contain_text("1 of 4 (25 %)")
+        expect(page.locator("#list_work tr")).to_have_count(3)
+        expect(page.locator("#list_work tr").last).to_contain_text("all108.0010.00")
+        expect(page.locator("#list_hours tr")).to_have_count(2)
+        expect(page.locator("#list_parts tr").first).to_contain_text("Dig2.0")
+        assert Axe().run(page).response["violations"] == []
+        page.get_by_role("button", name="Day before").click()
+        expect(page.get_by_label("Day", exact=True)).to_have_value("2026-11-25")
+        page.get_by_label("Day", exact=True).fill("2026-11-20")
+        expect(page).to_have_url(f"{address}/#work/2026-11-20")
+    assert [call[1].isoformat() for call in yard.calls if call[0] == "work"][-1] == "2026-11-20"
+
+
 def test_the_ground_in_3d_is_that_of_the_cursor(page: Page, tmp_path: Path) -> None:
     """It is the last that was kept until then: one an hour before noon, one 5 s after it."""
     yard = Yard(ground={"area": [-10.0, -10.0, 10.0, 10.0]})

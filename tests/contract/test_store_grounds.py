@@ -12,7 +12,7 @@ from tms_msg_ground.srv import ReadSnapshot, WriteSnapshot
 from tms_db import ground as grounds
 from tms_db import store
 from tms_db.ground_services import GroundServices
-from tms_db.reasons import GroundNotHeights, GroundNotThere, GroundTime
+from tms_db.reasons import GroundNotHeights, GroundNotThere, NoZone
 from tms_reason.errors import DbError
 from tms_soil import patches
 from tms_soil.surface import Heights
@@ -76,7 +76,7 @@ def test_the_ground_of_a_moment_is_the_last_until_then(services: GroundServices)
 def test_a_time_needs_its_zone(services: GroundServices, time: str) -> None:
     with pytest.raises(DbError) as caught:
         read(services, "first", time)
-    assert isinstance(caught.value.reason, GroundTime)
+    assert isinstance(caught.value.reason, NoZone)
 
 
 def test_what_is_no_ground_is_not_stored(services: GroundServices) -> None:

@@ -6,7 +6,7 @@ import json
 import re
 import shutil
 from collections.abc import Callable, Iterator
-from datetime import datetime, timedelta
+from datetime import datetime, timedelta, timezone
 from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
@@ -18,7 +18,7 @@ import reportlab
 from click.testing import CliRunner, Result
 from PIL import Image
 from tms_msg_db.msg import MachineState
-from tms_msg_db.srv import WriteMachineStates
+from tms_msg_db.srv import ListCycles, WriteMachineStates
 
 import height_files as files
 from height_files import EAST, LEVEL, NORTH
@@ -31,6 +31,7 @@ from tms_db.cycles import Cycles, checked
 from tms_db.ground import GroundSnapshots
 from tms_db.node import TaskServices
 from tms_db.reasons import BadCycle, CycleUnreadable, GroundNotThere, GroundUnreadable
+from tms_db.work_services import WorkServices
 from tms_reason.errors import DbError
 from tms_soil.surface import Heights
 from tms_work.cycle import Cycle
@@ -358,3 +359,21 @@ def test_a_report_of_today_has_the_change_of_the_ground(
     assert data.startswith(b"%PDF") and b"/HeiseiKakuGo-W5" in data and b"/Subtype /Image" in data
     data = (tmp_path / "embedded.pdf").read_bytes()
     assert b"/FontFile2" in data and b"/HeiseiKakuGo-W5" not in data
+
+
+def test_cycles_are_told_over_ros(shared_db: store.Db) -> None:
+    """Those of a span, as JSON that their model takes again."""
+    noon = datetime(2026, 11, 26, 12, tzinfo=timezone.utc)
+    made = [
+        Cycle(run_id="r", machine="zx200", number=number + 1, kind="dig", begun_at=at, ended_at=at, parts={}, bank=0.5)
+        for number in range(3)
+        for at in (noon + timedelta(hours=number),)
+    ]
+    Cycles(shared_db).write(made)
+    answer = ListCycles.Response()
+    span = {"begin": made[1].ended_at.isoformat(), "end": made[2].ended_at.isoformat()}
+    WorkServices(shared_db).read(ListCycles.Request(**span), answer)
+    assert [Cycle.model_validate_json(one) for one in answer.cycles] == [made[1]]
+    with pytest.raises(DbError) as caught:
+        WorkServices(shared_db).read(ListCycles.Request(begin="today", end=span["end"]), answer)
+    assert caught.value.code == "NO_ZONE"

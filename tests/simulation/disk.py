@@ -38,6 +38,7 @@ class Notes:
     pressed: bool = False  # the host agent has renamed the note that says armed
     armed_at: float = 0.0
     latch_told: bool = False  # the gateway's last word was that the machine is latched
+    rearming: bool = False  # a person has asked the gateway to arm it, and waits for the answer
     stalls: float = 0.0  # until then
     full: float = 0.0  # until then
     _done: float = 0.0  # when it has done what waits
@@ -79,6 +80,7 @@ class Notes:
         elif not full:
             self.armed, self.holder, self.run = True, effect.holder, effect.run
             self.pressed, self.armed_at = False, self.world.now
+            self.latch_told = self.latch_told and not self.rearming  # also if the gateway ends before it can answer
         return e.NoteKept(effect.number, problem)
 
 

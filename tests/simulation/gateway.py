@@ -60,6 +60,7 @@ class GatewayProcess(PermitProcess):
     def start(self) -> None:
         self.begin()
         self.asked, self.calls, self.cancelled, self._kept = {}, {}, {}, set()
+        self.notes.rearming = False
         unit, now = self.unit, self.world.now
         names = [name for name in unit.permits if name not in ("rc", "ts")]
         machine = unit.machine
@@ -135,6 +136,7 @@ class GatewayProcess(PermitProcess):
     def _happens(self, event: e.Event) -> None:
         core = self.core
         if core is not None:
+            self.notes.rearming = self.notes.rearming or (isinstance(event, e.RearmAsked) and bool(event.token))
             effects = step(core, event, self.world.now)
             if effects:
                 self._do(effects)
@@ -276,6 +278,7 @@ class GatewayProcess(PermitProcess):
 
     def _answer(self, request: int, effect: f.Effect) -> None:
         _, answer = self.calls.pop(request)
+        self.notes.rearming = self.notes.rearming and not isinstance(effect, f.Rearmed)
         self.world.send(f"{self.name} results", lambda: answer(effect))
 
     def _keep(self, effect: f.KeepState | f.KeepDriver | f.KeepReceipt) -> None:

@@ -94,6 +94,16 @@ def test_a_motion_that_no_source_has_shown_is_waited_for(seed: int) -> None:
     assert Schedule(seed).run().violation == ""
 
 
+def test_the_end_of_the_last_motion_shows_no_effect_of_a_stop() -> None:
+    """The next goal had just left, to a machine that stops at once by its facts, and goes on for a while."""
+    assert Schedule(778600196).run().violation == ""
+
+
+def test_a_rearm_whose_answer_is_lost_is_one() -> None:
+    """The disk had it, and the gateway was killed before it could answer."""
+    assert Schedule(2869398733).run().violation == ""
+
+
 def test_a_subtask_that_nobody_knew_is_found_to_be_a_later_one() -> None:
     """The host agent was frozen before it had told of it, and the subtask was killed during its goal."""
     assert Schedule(1120741919).run().violation == ""

@@ -62,7 +62,7 @@ def _hear(gateway: Gateway, goal: Goal, now: float) -> None:
         return
     _last_look(gateway, goal, now)
     if goal.stop is None:
-        goal.sent, goal.start = now, gateway.watch.positions
+        goal.sent, goal.start = now, gateway.watch.leaves(now)
         goal.enter(Phase.SENT, now)
         gateway.do(Send(goal.number))
 

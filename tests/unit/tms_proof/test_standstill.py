@@ -338,6 +338,18 @@ def test_a_stop_that_acts_at_once_waits_where_a_motion_had_hardly_begun() -> Non
     assert stood_after(reporter, standing(reporter), reporter.now, strongest=True) > DEAD
 
 
+@pytest.mark.parametrize(("late", "at_once"), [(0.5 * DEAD, False), (1.2 * DEAD, True)])
+def test_a_stop_that_acts_at_once_is_not_seen_to_act_on_the_motion_of_the_goal_before(late: float, at_once: bool) -> None:
+    """The next goal has left; until the dead time is over, only the end of the last motion can be seen."""
+    reporter = Reporter(watch(immediate=True))
+    reporter.watch.leaves(reporter.now)
+    reporter.run(1.0, 0.3)
+    left = reporter.now
+    assert reporter.watch.leaves(left) == reporter.watch.positions
+    reporter.run(late, 0.3)
+    assert (reporter.watch.proof(reporter.now, strongest=True).start == reporter.now) is at_once
+
+
 @pytest.mark.parametrize("strongest", [False, True])
 @pytest.mark.parametrize("before", [0.0, 0.4], ids=["from its begin on", "for a while before"])
 def test_sources_that_could_not_be_believed_meanwhile_make_the_proof_wait(strongest: bool, before: float) -> None:

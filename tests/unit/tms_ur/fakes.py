@@ -2,7 +2,7 @@
 
 import asyncio
 import threading
-from datetime import datetime, timedelta, timezone
+from datetime import date, datetime, timedelta, timezone
 from pathlib import Path
 from typing import Any
 
@@ -35,6 +35,9 @@ from tms_ur.recording_models import Recording, Series
 from tms_ur.scene_models import Scene, scene
 from tms_ur.start_models import ResumePlan
 from tms_ur.watch_models import AreaChange, AreasChecked, EnabledAreas
+from tms_ur.work_models import Work, WorkPlan, sum_of
+from tms_work import sums
+from tms_work.cycle import Cycle, Kind
 
 NOON = datetime(2026, 1, 31, 12, tzinfo=timezone.utc)
 HERE = "http://127.0.0.1:8080"
@@ -56,6 +59,14 @@ class FakeWatching:
         geometry = {"type": "Polygon", "coordinates": [ring]}
         yard = {"type": "Feature", "properties": {"id": "yard", "type": "unmanned"}, "geometry": geometry}
         return EnabledAreas(id="9f", by="a person", areas={"type": "FeatureCollection", "features": [yard]})
+
+
+def cycle(day: date, number: int, kind: Kind, **facts: Any) -> Cycle:
+    """One of an excavator or a carrier, that begins some times twelve minutes after nine, and takes some seconds."""
+    begun = datetime(day.year, day.month, day.day, 9, tzinfo=timezone.utc) + timedelta(minutes=12 * number)
+    machine = {"dig": "zx200", "haul": "ic120"}[kind]
+    return Cycle(run_id="r-1", machine=machine, number=number + 1, kind=kind, begun_at=begun,
+                 ended_at=begun + timedelta(seconds=sum(facts["parts"].values())), **facts)  # fmt: skip
 
 
 class FakePlaces:
@@ -167,6 +178,18 @@ class FakeSiteClient:
             raise TmsError(GroundNotThere("last"), "GROUND_NOT_THERE")
         taken, after = (first, second) if time < second else (second, None)
         return Ground(cell=10.0, rows=1, columns=2, heights=[0.75, None], taken_at=taken, next_at=after)
+
+    def work(self, day: date, plan: WorkPlan | None) -> Work:
+        """Ten buckets between nine and eleven, of which a truck took two away."""
+        self._called("work", day, plan)
+        dug = [cycle(day, number, "dig", bank=0.8, loose=1.0, parts={"dig": 12.0, "dump": 8.0}) for number in range(10)]
+        hauled = cycle(day, 3, "haul", loose=2.0, parts={"haul": 60.0}, distance=500.0)
+        cycles = [*dug, hauled]
+        return Work(
+            day=day, plan=plan, total=sum_of("", sums.total(cycles)),
+            machines=[sum_of(name, one) for name, one in sums.by(cycles, lambda one: one.machine).items()],
+            hours=[sum_of(name[-2:], one) for name, one in sums.by(cycles, sums.hour(timezone.utc)).items()],
+        )  # fmt: skip
 
     def sensing(self) -> Sensing:
         facts = {"name": "pile", "topic": "/pile", "state": "alive", "hz": 1.0, "hz_expected": None, "age": 0.5}

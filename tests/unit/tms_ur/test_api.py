@@ -510,6 +510,18 @@ def test_the_ground_of_a_moment(client: Client, site_client: FakeSiteClient) -> 
     assert client.get("/api/ground?at=2026-01-31T21:00:01").status_code == 422, "a time without a zone"
 
 
+def test_the_work_of_a_day_beside_its_plan(site_client: FakeSiteClient) -> None:
+    ground = {"area": [-10.0, -10.0, 10.0, 10.0], "plan": {"bank": 300.0, "loads": 50}}
+    found = Client(app(site_client, ground=ground)).get("/api/work?day=2026-11-26").json()
+    assert (found["day"], found["plan"]) == ("2026-11-26", {"bank": 300.0, "loads": 50})
+    assert found["total"]["bank"] == pytest.approx(8.0) and found["total"]["loads"] == 1
+    assert [one["name"] for one in found["machines"]] == ["ic120", "zx200"]
+    assert [one["cycles"] for one in found["hours"]] == [5, 5]
+    today = Client(app(site_client)).get("/api/work").json()
+    assert today["day"] == utc_now().astimezone().date().isoformat() and today["plan"] is None
+    assert Client(app(site_client)).get("/api/work?day=0001-01-01").status_code == 422, "no zone tells its begin"
+
+
 def test_resume_or_abandon_an_interrupted_run(client: Client, site_client: FakeSiteClient) -> None:
     assert client.get("/api/runs/r-1/resume").json() == {"task_id": 4, "done": ["dig"], "next": ["swing"]}
     assert client.post("/api/runs/r-1/resume", json={}).json() == {"run_id": "r-1"}
@@ -746,7 +758,7 @@ def test_every_endpoint_is_in_the_document(client: Client) -> None:
         "/api/tasks/{task_id}/diff", "/api/tasks/{task_id}/remove", "/api/runs/{run_id}/tree",
         "/api/runs/{run_id}/export", "/api/audit", "/api/machines/{name}/scene",
         "/api/processes/{name}/log", "/api/processes/{name}/restart",
-        "/api/templates", "/api/areas", "/api/areas/check", "/api/areas/enable", "/api/ground",
+        "/api/templates", "/api/areas", "/api/areas/check", "/api/areas/enable", "/api/ground", "/api/work",
         "/api/places", "/api/palette", "/api/templates/{name}", "/api/places/{name}/revoke",
         "/api/recordings", "/api/recordings/{run_id}/export",
     }  # fmt: skip

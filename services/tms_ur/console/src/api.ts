@@ -485,6 +485,23 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/work": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** What machines have moved on a day, in the site's time */
+        get: operations["work_api_work_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/runs/{run_id}/cancel": {
         parameters: {
             query?: never;
@@ -2403,6 +2420,114 @@ export interface components {
              */
             hardware: {
                 [key: string]: string;
+            };
+        };
+        /**
+         * Work
+         * @description The work of a day.
+         */
+        Work: {
+            /**
+             * Day
+             * Format: date
+             * @description in the site's time
+             */
+            day: string;
+            total: components["schemas"]["WorkSum"];
+            /** Machines */
+            machines: components["schemas"]["WorkSum"][];
+            /** Hours */
+            hours: components["schemas"]["WorkSum"][];
+            /** @description `ground: {plan: ...}` of the site file */
+            plan: components["schemas"]["WorkPlan"] | null;
+        };
+        /**
+         * WorkPlan
+         * @description What a day should bring.
+         */
+        WorkPlan: {
+            /**
+             * Bank
+             * @description m3, of soil as it lies
+             */
+            bank: number;
+            /**
+             * Loads
+             * @description truck loads
+             */
+            loads?: number | null;
+        };
+        /**
+         * WorkSum
+         * @description What some cycles moved. Soil counts when it is dug; what carriers took away is told beside it.
+         */
+        WorkSum: {
+            /**
+             * Name
+             * @description the machine, or the hour in the site's time; empty: all
+             */
+            name: string;
+            /**
+             * Cycles
+             * @description of excavators
+             */
+            cycles: number;
+            /**
+             * Bank
+             * @description m3, dug, as the soil lay
+             */
+            bank: number;
+            /**
+             * Loose
+             * @description m3, dug, as it was carried
+             */
+            loose: number;
+            /**
+             * Mass
+             * @description kg, dug
+             */
+            mass: number;
+            /**
+             * Fill
+             * @description mean of the buckets, by their heaped capacity; null: unknown
+             */
+            fill: number | null;
+            /**
+             * Loads
+             * @description of carriers
+             */
+            loads: number;
+            /**
+             * Hauled
+             * @description m3, loose, that carriers tipped
+             */
+            hauled: number;
+            /**
+             * Distance
+             * @description m, driven by carriers
+             */
+            distance: number;
+            /**
+             * Rate
+             * @description bank m3 in an hour of one excavator; null: nothing was dug
+             */
+            rate: number | null;
+            /**
+             * Mean Cycle
+             * @description s, of excavators; null: none
+             */
+            mean_cycle: number | null;
+            /**
+             * Unseen
+             * @description s in which nobody looked: what was moved then is estimated, or missing
+             */
+            unseen: number;
+            /**
+             * Parts
+             * @description s, of excavators' cycles and carriers' cycles, by their parts
+             */
+            parts: {
+                [key: string]: number;
             };
         };
         /**
@@ -4854,6 +4979,65 @@ export interface operations {
             };
             /** @description refused; the message says why */
             409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description a value is wrong */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description a module of the site is away or does not answer */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+        };
+    };
+    work_api_work_get: {
+        parameters: {
+            query?: {
+                /** @description none: today */
+                day?: string | null;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Work"];
+                };
+            };
+            /** @description the request cannot be read */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description log in first */
+            401: {
                 headers: {
                     [name: string]: unknown;
                 };

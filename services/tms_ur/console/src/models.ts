@@ -30,3 +30,5 @@ export type Stored = Models["Record"]; // a record; TypeScript has that name
 export type Task = Models["Task"];
 export type Template = Models["Template"];
 export type Tree = Models["Tree"];
+export type Work = Models["Work"];
+export type WorkSum = Models["WorkSum"];
