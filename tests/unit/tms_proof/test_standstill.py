@@ -339,7 +339,7 @@ def test_a_stop_that_acts_at_once_waits_where_a_motion_had_hardly_begun() -> Non
 
 
 @pytest.mark.parametrize(("late", "at_once"), [(0.5 * DEAD, False), (1.2 * DEAD, True)])
-def test_a_stop_that_acts_at_once_is_not_seen_to_act_on_the_motion_of_the_goal_before(late: float, at_once: bool) -> None:
+def test_a_stop_that_acts_at_once_is_not_seen_on_the_motion_of_the_goal_before(late: float, at_once: bool) -> None:
     """The next goal has left; until the dead time is over, only the end of the last motion can be seen."""
     reporter = Reporter(watch(immediate=True))
     reporter.watch.leaves(reporter.now)
