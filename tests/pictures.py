@@ -48,6 +48,7 @@ SHOWN = {
     "system": ("#list_processes tr",),
     "tasks": ("#list_stored tr",),
     "editor": ("#page [data-path]",),
+    "work": ("#list_work tr, #none_work",),
 }
 
 

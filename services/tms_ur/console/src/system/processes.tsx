@@ -13,6 +13,7 @@ import { ProcessLog } from "./log";
 import { type Row, rowsOf } from "./rows";
 
 const HEADS = 8; // columns
+const QUIET = new Set(["RUNNING", "STOPPED"]); // states of which supervisord only tells the time
 
 interface Props {
   state: State;
@@ -70,7 +71,7 @@ function Line({ row: { host, process }, running, open, onOpen }: LineProps) {
       <td>{host}</td>
       <td>
         <Badge state={shownState(process)} />
-        {process.state !== "RUNNING" && <Said reason={process.detail} done="logs" />}
+        {!QUIET.has(process.state) && <Said reason={process.detail} done="logs" />}
       </td>
       <td>{process.state === "RUNNING" ? duration(process.uptime) : "-"}</td>
       <td>{process.pid ? `${process.cpu.toFixed(1)} %` : "-"}</td>
