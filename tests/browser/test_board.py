@@ -8,12 +8,13 @@ import pytest
 from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import Page, expect
 
-from tms_decision.reasons import SoftwareStop
+from tms_config.clock import utc_now
+from tms_decision.reasons import ProcessAway, SoftwareStop
 from tms_ur.models import Host, LastStop, Machine, Process, Run
 from tms_ur.place_models import PlaceRequest, SharedPlace, SharedPlaces
 from tms_ur.reason_view import of_line, view
 from unit.tms_ur.fakes import NOON
-from yard import Yard, serving
+from yard import RUN, Yard, serving
 
 pytestmark = pytest.mark.browser
 XML = "<root><Sequence><L model_name='ic120'/><L model_name='zx200'/></Sequence></root>"
@@ -134,3 +135,16 @@ def test_on_a_phone_everything_is_in_reach(page: Page, address: str, yard: Waiti
     assert page.evaluate("document.documentElement.scrollWidth") <= 390
     found = Axe().run(page)
     assert found.violations_count == 0, found.generate_report()
+
+
+def test_a_run_that_waits_for_its_process_moves_nothing_below_it(page: Page, address: str, yard: Yard) -> None:
+    """Its reason has an action; a finger is over the tasks."""
+    yard.board.put_runs([])
+    page.goto(f"{address}/#board")
+    tasks = page.locator("#list_tasks")
+    expect(tasks.locator("li").first).to_be_visible()
+    place = tasks.bounding_box()
+    reason = view(ProcessAway("zx200:subtask_zx200_change_pose"))
+    yard.board.put_runs([RUN.model_copy(update={"reason": reason, "reason_since": utc_now()})])
+    expect(page.locator("#list_active")).to_contain_text("is not there")
+    assert tasks.bounding_box() == place

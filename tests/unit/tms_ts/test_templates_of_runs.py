@@ -120,7 +120,7 @@ def test_the_event_of_the_tree_tells_where_its_nodes_come_from() -> None:
 def test_the_check_reads_templates(execution: Execution, stored: Stored) -> None:
     check = execution._parts.check
     seen: list[bt.Tree] = []
-    check._preflight = lambda tree, present: seen.append(tree) or Findings()  # type: ignore[method-assign, func-returns-value]
+    check._preflight = lambda tree, **_: seen.append(tree) or Findings()  # type: ignore[method-assign, func-returns-value]
     assert not check.check(CheckTask.Request(xml=CALLS), CheckTask.Response()).errors
     assert seen[0].leaf_goals()[0].record == "old"
     stored.templates.clear()
