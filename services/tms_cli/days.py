@@ -1,6 +1,6 @@
 """Days as people name them on the command line, in the local time of this PC."""
 
-from datetime import date, datetime, timedelta
+from datetime import date, timedelta
 from typing import Any
 
 import click
@@ -25,10 +25,3 @@ class Day(click.ParamType[date]):
             return date.fromisoformat(str(value))
         except ValueError:
             self.fail(say("'{value}' is no day like 2026-11-26, today or yesterday", value=value), param, ctx)
-
-
-def span(day: date) -> tuple[datetime, datetime]:
-    """Begin and end of a day in local time."""
-    begin = datetime(day.year, day.month, day.day).astimezone()
-    next_day = day + timedelta(days=1)
-    return begin, datetime(next_day.year, next_day.month, next_day.day).astimezone()

@@ -1,8 +1,8 @@
 """The work of a day: asked of tms:db as cycles, summed up here."""
 
-from datetime import date, datetime, timedelta
+from datetime import date
 
-from pydantic import TypeAdapter, ValidationError
+from pydantic import ValidationError
 from tms_msg_db.srv import ListCycles
 
 from tms_machine.asking import ask
@@ -15,7 +15,6 @@ from tms_work import sums
 from tms_work.cycle import Cycle
 
 SERVICE, LIMIT = "/tms/db/list_cycles", 15.0  # s for an answer: a day has thousands of cycles
-CYCLE = TypeAdapter(Cycle)
 
 
 def work(ros: Ros, day: date, plan: WorkPlan | None) -> Work:
@@ -24,10 +23,10 @@ def work(ros: Ros, day: date, plan: WorkPlan | None) -> Work:
     Raises:
         TmsError: tms:db is away or refuses, or CyclesNotRead.
     """
-    begin, end = (datetime(at.year, at.month, at.day).astimezone() for at in (day, day + timedelta(days=1)))
+    begin, end = sums.span(day)
     request = ListCycles.Request(begin=begin.isoformat(), end=end.isoformat())
     try:
-        cycles = [CYCLE.validate_json(one) for one in ask(ros, ListCycles, SERVICE, request, LIMIT).cycles]
+        cycles = [Cycle.model_validate_json(one) for one in ask(ros, ListCycles, SERVICE, request, LIMIT).cycles]
     except ValidationError as error:
         raise TmsError(CyclesNotRead(validation.explain(error))) from error
     of_hour = sums.hour(None)

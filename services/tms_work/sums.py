@@ -3,7 +3,7 @@
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from datetime import tzinfo
+from datetime import date, datetime, timedelta, tzinfo
 
 from tms_work.cycle import Cycle
 
@@ -75,6 +75,12 @@ def hour(zone: tzinfo | None) -> Callable[[Cycle], str]:
 def day(zone: tzinfo | None) -> Callable[[Cycle], str]:
     """Key: the day of a time zone in which a cycle ended."""
     return lambda one: one.ended_at.astimezone(zone).strftime("%Y-%m-%d")
+
+
+def span(day: date) -> tuple[datetime, datetime]:
+    """Begin and end of a day in the time of this PC."""
+    begin, end = (datetime(at.year, at.month, at.day).astimezone() for at in (day, day + timedelta(days=1)))
+    return begin, end
 
 
 def _parts(cycles: Iterable[Cycle]) -> dict[str, float]:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import click
 
 from tms_cli import session, words
-from tms_cli.days import Day, span
+from tms_cli.days import Day
 from tms_cli.open_store import opened
 from tms_cli.reasons import NameTaken
 from tms_cli.words import say
@@ -66,9 +66,10 @@ def _facts(db: "Db", day: date, language: str) -> "Facts":
     from tms_cli.day_report.facts import Facts
     from tms_db.cycles import Cycles
     from tms_ground.settings import ground_of
+    from tms_work import sums
 
     site = session.site()
-    begin, end = span(day)
+    begin, end = sums.span(day)
     ground = ground_of(site)
     cycles = tuple(Cycles(db).find(begin=begin, end=end))
     return Facts(site.name, day, cycles, language, ground.plan if ground else None, _change(db, begin, end))

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from tms_cli import session
-from tms_cli.days import Day, span
+from tms_cli.days import Day
 from tms_cli.open_store import opened
 from tms_cli.words import columns, padded, say
 
@@ -43,7 +43,7 @@ def command(run_id: str, day: date | None, machine: str, by: str, as_json: bool,
 
     if as_json and as_csv:
         raise click.UsageError(say("give one of --json and --csv"))
-    begin, end = span(day) if day is not None else (None, None)
+    begin, end = sums.span(day) if day is not None else (None, None)
     with opened() as db:
         cycles = Cycles(db).find(run_id, machine, begin, end)
     groups, total = sums.by(cycles, _key(by)), sums.total(cycles)

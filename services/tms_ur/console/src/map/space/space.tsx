@@ -40,7 +40,11 @@ export default function Space({ scene, view, follow, ground, design }: Props) {
   useEffect(() => {
     if (ground !== null) {
       there?.setGround(ground);
-      there?.showDesign(design);
+    }
+  }, [there, ground]);
+  useEffect(() => {
+    if (ground !== null) {
+      there?.showDesign(design); // also of a new ground
     }
   }, [there, ground, design]);
   return (
