@@ -10,6 +10,7 @@ from tms_ground.reasons import AreaInsideOut, NoGround, NoSoil, OneDesign, Where
 from tms_reason.errors import ConfigError
 from tms_reason.validation import Wrong, problems
 from tms_soil.soils import Soil, SoilsFile
+from tms_work.plan import Plan
 
 
 class Origin(Settings):
@@ -82,13 +83,6 @@ class Design(Settings):
         if [self.plane, self.pit, self.file].count(None) != 2:
             raise Wrong(OneDesign())
         return self
-
-
-class Plan(Settings):
-    """What a day should bring."""
-
-    bank: float = Field(gt=0)  # m3, of soil as it lies
-    loads: int | None = Field(ge=1, default=None)  # truck loads
 
 
 class Ground(Settings):

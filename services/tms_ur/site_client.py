@@ -1,7 +1,7 @@
 """The API's side of ROS: blocking calls for worker threads, and topics that update the board."""
 
 from datetime import date, datetime
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from std_msgs.msg import String
 from tms_msg_db.srv import (
@@ -56,7 +56,11 @@ from tms_ur.scene_models import Scene, scene
 from tms_ur.watch_models import AreasChecked
 from tms_ur.watching import Watching
 from tms_ur.work_client import work
-from tms_ur.work_models import Work, WorkPlan
+from tms_ur.work_models import Work
+from tms_work.plan import Plan
+
+if TYPE_CHECKING:
+    from tms_ur.report_client import Wanted
 
 PROCESS_LIMIT = 15.0  # s for a process to end and to be started
 
@@ -252,9 +256,15 @@ class SiteClient(RunCalls):
         """The last ground that was kept until a time; a TmsError says why it is not told."""
         return ground_at(self._ros, time, cells)
 
-    def work(self, day: date, plan: WorkPlan | None) -> Work:
+    def work(self, day: date, plan: Plan | None) -> Work:
         """What was moved on a day; a TmsError says why it is not told."""
         return work(self._ros, day, plan)
+
+    def report(self, wanted: "Wanted") -> bytes:
+        """A daily report as a file; a TmsError says why it is not made."""
+        from tms_ur.report_client import report  # loads plots and PDF
+
+        return report(self._ros, wanted)
 
     # processes
 

@@ -10,15 +10,16 @@ from tms_reason import validation
 from tms_reason.errors import TmsError
 from tms_ros.node import Ros
 from tms_ur.reasons import CyclesNotRead
-from tms_ur.work_models import Work, WorkPlan, sum_of
+from tms_ur.work_models import Work, sum_of
 from tms_work import sums
 from tms_work.cycle import Cycle
+from tms_work.plan import Plan
 
 SERVICE, LIMIT = "/tms/db/list_cycles", 15.0  # s for an answer: a day has thousands of cycles
 
 
-def work(ros: Ros, day: date, plan: WorkPlan | None) -> Work:
-    """What was moved on a day, in the time of this PC.
+def cycles_of(ros: Ros, day: date) -> list[Cycle]:
+    """The cycles of a day, in the time of this PC.
 
     Raises:
         TmsError: tms:db is away or refuses, or CyclesNotRead.
@@ -26,9 +27,18 @@ def work(ros: Ros, day: date, plan: WorkPlan | None) -> Work:
     begin, end = sums.span(day)
     request = ListCycles.Request(begin=begin.isoformat(), end=end.isoformat())
     try:
-        cycles = [Cycle.model_validate_json(one) for one in ask(ros, ListCycles, SERVICE, request, LIMIT).cycles]
+        return [Cycle.model_validate_json(one) for one in ask(ros, ListCycles, SERVICE, request, LIMIT).cycles]
     except ValidationError as error:
         raise TmsError(CyclesNotRead(validation.explain(error))) from error
+
+
+def work(ros: Ros, day: date, plan: Plan | None) -> Work:
+    """What was moved on a day, in the time of this PC.
+
+    Raises:
+        TmsError: see `cycles_of`.
+    """
+    cycles = cycles_of(ros, day)
     of_hour = sums.hour(None)
     return Work(
         day=day, plan=plan, total=sum_of("", sums.total(cycles)),

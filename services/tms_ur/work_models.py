@@ -5,6 +5,7 @@ from datetime import date
 from pydantic import Field
 
 from tms_ur.base_model import Model
+from tms_work.plan import Plan
 from tms_work.sums import Sum
 
 
@@ -26,13 +27,6 @@ class WorkSum(Model):
     parts: dict[str, float] = Field(description="s, of excavators' cycles and carriers' cycles, by their parts")
 
 
-class WorkPlan(Model):
-    """What a day should bring."""
-
-    bank: float = Field(description="m3, of soil as it lies")
-    loads: int | None = Field(default=None, description="truck loads")
-
-
 class Work(Model):
     """The work of a day."""
 
@@ -40,7 +34,7 @@ class Work(Model):
     total: WorkSum
     machines: list[WorkSum]
     hours: list[WorkSum]
-    plan: WorkPlan | None = Field(description="`ground: {plan: ...}` of the site file")
+    plan: Plan | None = Field(description="`ground: {plan: ...}` of the site file")
 
 
 def sum_of(name: str, one: Sum) -> WorkSum:

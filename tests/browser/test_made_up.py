@@ -346,6 +346,10 @@ def test_the_work_of_a_day_is_beside_its_plan(page: Page, tmp_path: Path) -> Non
         expect(page.locator("#list_hours tr")).to_have_count(2)
         expect(page.locator("#list_parts tr").first).to_contain_text("Dig2.0")
         assert Axe().run(page).response["violations"] == []
+        with page.expect_download() as download:
+            page.get_by_role("link", name="Daily report: PDF").click()
+        assert download.value.suggested_filename == "daily-report-2026-11-26.pdf"
+        assert download.value.path().read_bytes().startswith(b"%PDF")
         page.get_by_role("button", name="Day before").click()
         expect(page.get_by_label("Day", exact=True)).to_have_value("2026-11-25")
         page.get_by_label("Day", exact=True).fill("2026-11-20")

@@ -18,7 +18,7 @@ SERVICES = PROJECT / "services"
 
 def printed() -> list[str]:
     """What the command line prints; its own tests look after it."""
-    return [english for name in ("tms_cli_words", "tms_cli_help") for english in catalogue(name)]
+    return [english for name in ("tms_cli_words", "tms_cli_help", "tms_report") for english in catalogue(name)]
 
 
 def declared() -> list[type[Reason]]:

@@ -23,8 +23,6 @@ from tms_msg_db.srv import ListCycles, WriteMachineStates
 import height_files as files
 from height_files import EAST, LEVEL, NORTH
 from tms_cli.commands import ground, report, work
-from tms_cli.day_report import letters
-from tms_cli.day_report.map_picture import BOTTOM, LEFT, RIGHT, TOP
 from tms_config.clock import utc_now
 from tms_db import store
 from tms_db.cycles import Cycles, checked
@@ -33,6 +31,8 @@ from tms_db.node import TaskServices
 from tms_db.reasons import BadCycle, CycleUnreadable, GroundNotThere, GroundUnreadable
 from tms_db.work_services import WorkServices
 from tms_reason.errors import DbError
+from tms_report import letters
+from tms_report.map_picture import BOTTOM, LEFT, RIGHT, TOP
 from tms_soil.surface import Heights
 from tms_work.cycle import Cycle
 from tms_work.reasons import EndsBeforeBegin

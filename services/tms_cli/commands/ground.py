@@ -264,7 +264,7 @@ def diff(before: str, after: str, picture: Path | None, inside: "tuple[Point, ..
     Example:
       tms ground diff first last --picture change.png
     """
-    from tms_cli.day_report import ground_map, map_picture
+    from tms_report import ground_map, map_picture
     from tms_soil import volumes
 
     with opened() as db:

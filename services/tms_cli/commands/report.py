@@ -14,8 +14,9 @@ from tms_cli.words import say
 from tms_reason.errors import TmsError
 
 if TYPE_CHECKING:
-    from tms_cli.day_report.facts import Facts, GroundChange
     from tms_db.store import Db
+    from tms_report.facts import Facts
+    from tms_report.ground_of_day import Stored
 
 KINDS = (".html", ".pdf")
 
@@ -39,7 +40,7 @@ def command(day: date, output: Path | None, language: str | None, overwrite: boo
       tms report --day today
       tms report --day 2026-11-26 --language ja --output report.pdf
     """
-    from tms_cli.day_report import page, sheet
+    from tms_report import page, sheet
 
     file = output or Path(f"daily-report-{day.isoformat()}.html")
     if file.suffix.lower() not in KINDS:
@@ -63,33 +64,34 @@ def command(day: date, output: Path | None, language: str | None, overwrite: boo
 
 
 def _facts(db: "Db", day: date, language: str) -> "Facts":
-    from tms_cli.day_report.facts import Facts
     from tms_db.cycles import Cycles
     from tms_ground.settings import ground_of
+    from tms_report.facts import Facts
+    from tms_report.ground_of_day import change_in
     from tms_work import sums
 
     site = session.site()
     begin, end = sums.span(day)
     ground = ground_of(site)
     cycles = tuple(Cycles(db).find(begin=begin, end=end))
-    return Facts(site.name, day, cycles, language, ground.plan if ground else None, _change(db, begin, end))
+    return Facts(site.name, day, cycles, language, ground.plan if ground else None, change_in(_Kept(db), begin, end))
 
 
-def _change(db: "Db", begin: datetime, end: datetime) -> "GroundChange | None":
-    """From the last ground before the day, or its first one, to its last one; None without two of them."""
-    from tms_cli.day_report import ground_map, map_picture
-    from tms_cli.day_report.facts import GroundChange
-    from tms_db.ground import GroundSnapshots
-    from tms_soil.volumes import between
+class _Kept:
+    """The grounds of a store, read by one list of them."""
 
-    grounds = GroundSnapshots(db)
-    old = [one for one in grounds.all() if one.taken_at < end]
-    of_day = [one for one in old if one.taken_at >= begin]
-    earlier = [one for one in old if one.taken_at < begin][:1] or of_day[-1:]
-    if not of_day or earlier[0] == of_day[0]:
-        return None
-    before, after = grounds.read(earlier[0]), grounds.read(of_day[0])
-    rise = ground_map.change(before, after)
-    first, last = (one.taken_at.astimezone().strftime("%Y-%m-%d %H:%M") for one in (earlier[0], of_day[0]))
-    picture, full = map_picture.picture(after, rise), ground_map.full_colour(rise)
-    return GroundChange(first, last, between(before, after), full, picture)
+    def __init__(self, db: "Db") -> None:
+        from tms_db.ground import GroundSnapshots
+
+        self._grounds = GroundSnapshots(db)
+        self._all = self._grounds.all()
+
+    def __call__(self, which: str, begin: datetime | None, end: datetime) -> "Stored | None":
+        from tms_db.ground import chosen
+        from tms_report.ground_of_day import Stored
+
+        found = [one for one in self._all if (begin is None or one.taken_at >= begin) and one.taken_at < end]
+        if not found:
+            return None
+        one = chosen(found, which)
+        return Stored(one.taken_at, self._grounds.read(one))

@@ -37,8 +37,8 @@ SENTENCE = re.compile(r"[a-z]{2,} [a-z]{2,}")
 CODE = re.compile(r"[A-Z]+(_[A-Z]+)+|BUSY|CONFLICT|FAILED|AMBIGUOUS|PREFLIGHT")
 
 
-def sources() -> Iterator[tuple[Path, ast.Module]]:
-    for file in sorted((SERVICES / "tms_cli").rglob("*.py")):
+def sources(package: str = "tms_cli") -> Iterator[tuple[Path, ast.Module]]:
+    for file in sorted((SERVICES / package).rglob("*.py")):
         yield file, ast.parse(file.read_text(encoding="utf-8"))
 
 
@@ -46,10 +46,10 @@ def name_of(call: ast.Call) -> str:
     return call.func.attr if isinstance(call.func, ast.Attribute) else getattr(call.func, "id", "")
 
 
-def said() -> set[str]:
+def said(package: str = "tms_cli") -> set[str]:
     """The English of every `say`, also where it is first given a name or comes from the table of processes."""
-    found = set(PURPOSES.values())
-    for _, tree in sources():
+    found = set(PURPOSES.values()) if package == "tms_cli" else set()
+    for _, tree in sources(package):
         named = {
             target.id: node.value.value
             for node in ast.walk(tree)
@@ -88,6 +88,12 @@ def test_every_line_has_its_japanese_with_the_same_values() -> None:
     for english, japanese in SAID.items():
         assert fields(english) == fields(japanese), english
         assert japanese, english
+
+
+def test_every_text_of_the_daily_report_has_its_japanese() -> None:
+    known = catalogue("tms_report")
+    assert set(known) == said("tms_report")
+    assert [english for english, japanese in known.items() if fields(english) != fields(japanese)] == []
 
 
 def test_no_command_prints_a_sentence_of_its_own() -> None:

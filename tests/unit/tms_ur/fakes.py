@@ -22,6 +22,7 @@ from tms_reason.errors import TmsError
 from tms_reason.reason import Foreign, Reason
 from tms_reason.remedies import EDIT_TASK
 from tms_reason.wire import to_line
+from tms_report.facts import Facts
 from tms_rp.reasons import PartOf
 from tms_ur.access import Access
 from tms_ur.api import create_app
@@ -32,12 +33,14 @@ from tms_ur.models import AddedTemplate, Event, Rearmed, Receipt, Run, Task, Tas
 from tms_ur.reason_view import of_line, view
 from tms_ur.recording_client import Asked
 from tms_ur.recording_models import Recording, Series
+from tms_ur.report_client import FORMS, Wanted
 from tms_ur.scene_models import Scene, scene
 from tms_ur.start_models import ResumePlan
 from tms_ur.watch_models import AreaChange, AreasChecked, EnabledAreas
-from tms_ur.work_models import Work, WorkPlan, sum_of
+from tms_ur.work_models import Work, sum_of
 from tms_work import sums
 from tms_work.cycle import Cycle, Kind
+from tms_work.plan import Plan
 
 NOON = datetime(2026, 1, 31, 12, tzinfo=timezone.utc)
 HERE = "http://127.0.0.1:8080"
@@ -179,7 +182,7 @@ class FakeSiteClient:
         taken, after = (first, second) if time < second else (second, None)
         return Ground(cell=10.0, rows=1, columns=2, heights=[0.75, None], taken_at=taken, next_at=after)
 
-    def work(self, day: date, plan: WorkPlan | None) -> Work:
+    def work(self, day: date, plan: Plan | None) -> Work:
         """Ten buckets between nine and eleven, of which a truck took two away."""
         self._called("work", day, plan)
         dug = [cycle(day, number, "dig", bank=0.8, loose=1.0, parts={"dig": 12.0, "dump": 8.0}) for number in range(10)]
@@ -190,6 +193,12 @@ class FakeSiteClient:
             machines=[sum_of(name, one) for name, one in sums.by(cycles, lambda one: one.machine).items()],
             hours=[sum_of(name[-2:], one) for name, one in sums.by(cycles, sums.hour(timezone.utc)).items()],
         )  # fmt: skip
+
+    def report(self, wanted: "Wanted") -> bytes:
+        """Of the same buckets."""
+        self._called("report", wanted)
+        cycles = tuple(cycle(wanted.day, number, "dig", bank=0.8, parts={"dig": 20.0}) for number in range(10))
+        return FORMS[wanted.form](Facts(wanted.site, wanted.day, cycles, wanted.language, wanted.plan))
 
     def sensing(self) -> Sensing:
         facts = {"name": "pile", "topic": "/pile", "state": "alive", "hz": 1.0, "hz_expected": None, "age": 0.5}

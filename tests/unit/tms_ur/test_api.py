@@ -522,6 +522,19 @@ def test_the_work_of_a_day_beside_its_plan(site_client: FakeSiteClient) -> None:
     assert Client(app(site_client)).get("/api/work?day=0001-01-01").status_code == 422, "no zone tells its begin"
 
 
+def test_the_daily_report_as_a_file(site_client: FakeSiteClient) -> None:
+    client = Client(app(site_client, ground={"area": [-10.0, -10.0, 10.0, 10.0], "plan": {"bank": 16.0}}))
+    page = client.get("/api/work/report?day=2026-11-26&form=html&language=ja")
+    assert page.headers["content-disposition"] == 'attachment; filename="daily-report-2026-11-26.html"'
+    assert page.headers["content-type"] == "text/html; charset=utf-8"
+    assert "作業日報 demo 2026-11-26" in page.text and "<td>16.0</td><td>8.0</td><td>50 %</td>" in page.text
+    sheet = client.get("/api/work/report")
+    assert sheet.headers["content-type"] == "application/pdf" and sheet.content.startswith(b"%PDF")
+    assert site_client.calls[-1][1].day == utc_now().astimezone().date() and site_client.calls[-1][1].language == "en"
+    assert client.get("/api/work/report?form=doc").status_code == 422
+    assert client.get("/api/work/report?day=0001-01-01").status_code == 422
+
+
 def test_resume_or_abandon_an_interrupted_run(client: Client, site_client: FakeSiteClient) -> None:
     assert client.get("/api/runs/r-1/resume").json() == {"task_id": 4, "done": ["dig"], "next": ["swing"]}
     assert client.post("/api/runs/r-1/resume", json={}).json() == {"run_id": "r-1"}
@@ -759,6 +772,7 @@ def test_every_endpoint_is_in_the_document(client: Client) -> None:
         "/api/runs/{run_id}/export", "/api/audit", "/api/machines/{name}/scene",
         "/api/processes/{name}/log", "/api/processes/{name}/restart",
         "/api/templates", "/api/areas", "/api/areas/check", "/api/areas/enable", "/api/ground", "/api/work",
+        "/api/work/report",
         "/api/places", "/api/palette", "/api/templates/{name}", "/api/places/{name}/revoke",
         "/api/recordings", "/api/recordings/{run_id}/export",
     }  # fmt: skip

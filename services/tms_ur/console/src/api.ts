@@ -502,6 +502,23 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/work/report": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** The daily report as a file */
+        get: operations["report_api_work_report_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/runs/{run_id}/cancel": {
         parameters: {
             query?: never;
@@ -1491,6 +1508,22 @@ export interface components {
             since: string | null;
         };
         /**
+         * Plan
+         * @description `ground: {plan: ...}` of the site file.
+         */
+        Plan: {
+            /**
+             * Bank
+             * @description m3, of soil as it lies
+             */
+            bank: number;
+            /**
+             * Loads
+             * @description truck loads
+             */
+            loads?: number | null;
+        };
+        /**
          * Process
          * @description A process of the site.
          */
@@ -2439,23 +2472,7 @@ export interface components {
             /** Hours */
             hours: components["schemas"]["WorkSum"][];
             /** @description `ground: {plan: ...}` of the site file */
-            plan: components["schemas"]["WorkPlan"] | null;
-        };
-        /**
-         * WorkPlan
-         * @description What a day should bring.
-         */
-        WorkPlan: {
-            /**
-             * Bank
-             * @description m3, of soil as it lies
-             */
-            bank: number;
-            /**
-             * Loads
-             * @description truck loads
-             */
-            loads?: number | null;
+            plan: components["schemas"]["Plan"] | null;
         };
         /**
          * WorkSum
@@ -5025,6 +5042,68 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Work"];
+                };
+            };
+            /** @description the request cannot be read */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description log in first */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description a value is wrong */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description a module of the site is away or does not answer */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+        };
+    };
+    report_api_work_report_get: {
+        parameters: {
+            query?: {
+                /** @description none: today */
+                day?: string | null;
+                form?: "html" | "pdf";
+                language?: "en" | "ja";
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/html; charset=utf-8": unknown;
+                    "application/pdf": unknown;
                 };
             };
             /** @description the request cannot be read */

@@ -1,6 +1,7 @@
 // What the machines did: map or 3D, values and plots, all at the cursor of the time line.
 import { lazy, Suspense, useMemo, useState } from "react";
 import { useTranslation } from "react-i18next";
+import { Downloads } from "../downloads";
 import type { Recording } from "../models";
 import { Table } from "../table";
 import { PastMap } from "./past_map";
@@ -37,18 +38,8 @@ export function Motion({ run, first, recording, time, onTime }: Props) {
             ))}
           </select>
         </label>
-        <span>{t("export_motion")}:</span>
-        {FORMS.map((form) => (
-          <a
-            key={form}
-            className="button"
-            href={`/api/recordings/${encodeURIComponent(run)}/export?form=${form}`}
-            download=""
-          >
-            {form.toUpperCase()}
-          </a>
-        ))}
       </div>
+      <Downloads id="exports_motion" label="export_motion" forms={FORMS} href={motionFile(run)} />
       {plots.map((plot) => (
         <OnePlot key={`${chosen} ${plot.title}`} machine={chosen} plot={plot} seconds={seconds} onTime={onTime} />
       ))}
@@ -113,3 +104,5 @@ function Values({ recording, seconds }: { recording: Recording; seconds: number 
 }
 
 const fixed = (value: number | undefined) => (value === undefined ? "-" : value.toFixed(2));
+
+const motionFile = (run: string) => (form: string) => `/api/recordings/${encodeURIComponent(run)}/export?form=${form}`;

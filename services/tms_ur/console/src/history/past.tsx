@@ -1,6 +1,7 @@
 // The time line of one run: tree, machines, stops and journal at one cursor.
 import { useEffect, useMemo, useRef, useState } from "react";
 import { useTranslation } from "react-i18next";
+import { Downloads } from "../downloads";
 import { beginOf, countAt, endOf, type Journal } from "../journal/journal";
 import { momentAfter } from "../journal/replay";
 import { useJournal } from "../journal/use_journal";
@@ -56,7 +57,7 @@ function Line({ id, run, seconds, journal, live }: Props & { journal: Journal; l
     <section id="past" ref={section}>
       <h2 id="past_title">{`${t("run")} ${id}`}</h2>
       <Values run={run} />
-      <Exports id={id} />
+      <Downloads id="exports" label="export" forms={FORMS} href={journalFile(id)} />
       <Receipts journal={journal} onTime={setChosen} />
       <p id="journal_cut" className="bad">
         {journal.cut ? t("journal_cut", { number: journal.events.length }) : ""}
@@ -103,20 +104,6 @@ function Values({ run }: { run: Run | undefined }) {
   );
 }
 
-function Exports({ id }: { id: string }) {
-  const { t } = useTranslation();
-  return (
-    <div id="exports" className="bar">
-      <span>{t("export")}:</span>
-      {FORMS.map((form) => (
-        <a key={form} className="button" href={`/api/runs/${encodeURIComponent(id)}/export?form=${form}`} download="">
-          {form.toUpperCase()}
-        </a>
-      ))}
-    </div>
-  );
-}
-
 function Receipts({ journal, onTime }: { journal: Journal; onTime: (time: number) => void }) {
   const { t } = useTranslation();
   const stops = journal.events.flatMap((event, index) => (event.kind === "stop" ? [{ event, index }] : []));
@@ -137,3 +124,5 @@ function Receipts({ journal, onTime }: { journal: Journal; onTime: (time: number
     </>
   );
 }
+
+const journalFile = (run: string) => (form: string) => `/api/runs/${encodeURIComponent(run)}/export?form=${form}`;

@@ -1,6 +1,7 @@
 // Work: what the machines have moved on a day, beside what was planned for it.
 import { useEffect, useState } from "react";
 import { useTranslation } from "react-i18next";
+import { Downloads } from "../downloads";
 import type { Work, WorkSum } from "../models";
 import { Problem } from "../problem";
 import { repeated } from "../repeated";
@@ -27,13 +28,16 @@ function useWork(day: string): { work: Work | null; error: Error | null } {
 }
 
 export default function WorkPage({ rest }: { rest: string }) {
-  const { t } = useTranslation();
+  const { t, i18n } = useTranslation();
   const { work, error } = useWork(rest);
+  const report = (day: string) => (form: string) =>
+    `/api/work/report?day=${day}&form=${form}&language=${i18n.language}`;
   return (
     <>
       <h2>{t("p_work")}</h2>
       <Problem id="work_problem" error={error} />
       {work && <Days day={work.day} />}
+      {work && <Downloads id="daily_report" label="daily_report" forms={["pdf", "html"]} href={report(work.day)} />}
       {work && <Figures work={work} />}
     </>
   );

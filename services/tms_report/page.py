@@ -8,9 +8,9 @@ from lxml import etree, html
 from lxml.html import builder as build
 from reportlab.graphics import renderSVG
 
-from tms_cli.day_report.facts import Facts
-from tms_cli.day_report.plots import plots
-from tms_cli.day_report.sections import Section, plan, sections
+from tms_report.facts import Facts
+from tms_report.plots import plots
+from tms_report.sections import Section, plan, sections
 
 STYLE = Path(__file__).with_name("page.css")
 

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from tms_cli.day_report.facts import Facts
+from tms_report.facts import Facts
 from tms_work.cycle import PARTS, Kind
 from tms_work.sums import Sum
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
-from tms_cli.day_report.ground_map import full_colour
+from tms_report.ground_map import full_colour
 from tms_soil.surface import Array, Bounds, Heights
 
 LOWERED, RAISED, SAME, UNKNOWN = (178, 24, 43), (33, 102, 172), (247, 247, 247), (150, 150, 150)  # red, blue, greys

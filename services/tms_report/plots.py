@@ -10,9 +10,9 @@ from reportlab.graphics.charts.linecharts import HorizontalLineChart
 from reportlab.graphics.shapes import Drawing, String
 from reportlab.lib.colors import HexColor
 
-from tms_cli.day_report.facts import Facts
-from tms_cli.day_report.letters import font
-from tms_cli.day_report.sections import part_name
+from tms_report.facts import Facts
+from tms_report.letters import font
+from tms_report.sections import part_name
 from tms_work.cycle import PARTS
 
 WIDTH, HEIGHT = 480, 170  # points

@@ -10,11 +10,11 @@ from reportlab.lib.styles import ParagraphStyle
 from reportlab.lib.units import mm
 from reportlab.platypus import Image, KeepTogether, Paragraph, SimpleDocTemplate, Spacer, Table, TableStyle
 
-from tms_cli.day_report.facts import Facts
-from tms_cli.day_report.letters import font
-from tms_cli.day_report.page import estimate_note, heading, map_note
-from tms_cli.day_report.plots import plots
-from tms_cli.day_report.sections import Section, plan, sections
+from tms_report.facts import Facts
+from tms_report.letters import font
+from tms_report.page import estimate_note, heading, map_note
+from tms_report.plots import plots
+from tms_report.sections import Section, plan, sections
 
 MARGIN = 15 * mm
 MAP_WIDTH, MAP_HEIGHT = 165 * mm, 95 * mm

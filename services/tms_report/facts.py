@@ -5,11 +5,11 @@ from datetime import date, tzinfo
 from functools import cached_property
 from typing import Any
 
-from tms_ground.settings import Plan
 from tms_reason import texts
 from tms_soil.volumes import Volumes
 from tms_work import sums
 from tms_work.cycle import Cycle
+from tms_work.plan import Plan
 from tms_work.sums import Sum
 
 
