@@ -99,6 +99,11 @@ def test_the_end_of_the_last_motion_shows_no_effect_of_a_stop() -> None:
     assert Schedule(778600196).run().violation == ""
 
 
+def test_a_machine_that_has_stopped_a_goal_is_watched_while_the_disk_stalls() -> None:
+    """Its receipt waited for the disk, its goal for the receipt; meanwhile somebody moved it by its levers."""
+    assert Schedule(20372777).run().violation == ""
+
+
 def test_a_rearm_whose_answer_is_lost_is_one() -> None:
     """The disk had it, and the gateway was killed before it could answer."""
     assert Schedule(2869398733).run().violation == ""

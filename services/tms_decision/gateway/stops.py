@@ -174,9 +174,9 @@ def busy(gateway: Gateway) -> bool:
 
 
 def watch(gateway: Gateway, now: float) -> None:
-    """See that a stopped machine still stands."""
+    """See that a stopped machine still stands, also while the receipt of its goal's stop waits for the disk."""
     gateway.watch.settle(now)
-    if gateway.active is not None:
+    if (active := gateway.active) is not None and (active.stop is None or active.stop.receipt is None):
         gateway.watch.commanded(now)
     elif gateway.vigil.left(now, gateway.watch.moved_at) and gateway.by_hand is None and not gateway.proves():
         stop(gateway, now, r.LeftStandStill(), StopKind.LATCH, broken=r.LeftStandStill())

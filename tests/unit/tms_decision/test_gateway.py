@@ -304,6 +304,19 @@ def test_a_machine_that_leaves_stand_still_is_stopped_and_latched() -> None:
     assert not rig.receipt.confirmed and rig.receipt.detail == LeftStandStill()
 
 
+def test_it_is_watched_while_the_disk_stalls() -> None:
+    """The goal that was stopped waits for its receipt."""
+    rig = ready().moving(seconds=20.0)
+    rig.disk_answers = False
+    rig.happens(e.StopAsked(5, None, True))
+    rig.run(3.0)
+    assert rig.all(f.KeepReceipt) and rig.gateway.active is not None
+    rig.plant.emergency = False  # levers
+    rig.plant.coming.append((rig.now, 0.2))
+    rig.run(1.0)
+    assert rig.gateway.latch.cause == LeftStandStill() and rig.plant.emergency
+
+
 def test_a_motion_that_lasts_too_long_is_stopped() -> None:
     rig = ready()
     rig.ask(1, None, 20.0, lasts=2.0)
