@@ -108,6 +108,15 @@ class Tracks(Settings):
     origin: str = Field(min_length=1)  # where the figures come from
 
 
+class Solid(Settings):
+    """A part of what a machine looks like, for eyes only: an outline on its link, the same over each span of y."""
+
+    link: str
+    role: Literal["track", "body", "arm", "tool"]
+    y: tuple[tuple[float, float], ...] = Field(min_length=1)  # m, from and to
+    outline: tuple[tuple[float, float], ...] = Field(min_length=3)  # m, x and z
+
+
 class Drive(Settings):
     """Limits of travel for the navigation and the stand-in."""
 
@@ -219,6 +228,7 @@ class MachineModel(Settings):
     vessel: Vessel | None = None
     blade: Blade | None = None
     tracks: Tracks | None = None  # without them it leaves the ground as it is
+    solids: tuple[Solid, ...] = ()
     drive: Drive | None = None
     response: dict[str, Response] = {}  # joint, or `drive` for the tracks -> how it answers commands
     initial: dict[str, float] = {}  # rad, start pose of its stand-in
@@ -253,7 +263,7 @@ class MachineModel(Settings):
     @model_validator(mode="after")
     def _names_fit(self) -> "MachineModel":
         links = {origin.child for origin in self.geometry.values()} | {"base_link"}
-        tools = [tool.link for tool in (self.bucket, self.vessel, self.blade) if tool]
+        tools = [tool.link for tool in (self.bucket, self.vessel, self.blade, *self.solids) if tool]
         strange = [name for name in (*self.shapes, *tools) if name not in links]
         strange += [name for name in (*self.initial, *self._border_joints()) if name not in self.joints]
         if strange:

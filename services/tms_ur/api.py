@@ -21,7 +21,7 @@ from starlette.middleware.gzip import GZipMiddleware
 from tms_config.config import Site
 from tms_reason.errors import TmsError
 from tms_reason.reason import Reason
-from tms_ur import commands, editor, reading, recordings, sessions, work
+from tms_ur import bodies, commands, editor, reading, recordings, sessions, work
 from tms_ur.access import Access
 from tms_ur.hashing import Hashing
 from tms_ur.problems import problem, problems
@@ -51,6 +51,7 @@ def create_app(client: "SiteClient", audit: "Audit", site: Site, access: Access)
     )  # fmt: skip
     hashing = Hashing()
     reading.add(app, client, audit, site)
+    bodies.add(app, site)
     editor.add(app, client, site)
     recordings.add(app, client, site)
     work.add(app, client, site)

@@ -16,7 +16,6 @@ from tms_reason.names import Name
 from tms_reason.reason import Reason
 from tms_ur import export
 from tms_ur.audit_chain import RUN as AUDIT
-from tms_ur.body_models import SiteInfo, site_info
 from tms_ur.command_models import Xml
 from tms_ur.data_models import Change, Record, Sensing
 from tms_ur.ground_models import Ground
@@ -73,16 +72,11 @@ def add(app: FastAPI, client: "SiteClient", audit: "Audit", site: Site) -> None:
 
 def _live(app: FastAPI, client: "SiteClient", site: Site) -> None:
     stream = Stream(client.board)
-    shown = site_info(site)
 
     # `async` where the endpoint waits for nothing, so that it answers even when all workers wait for a module
     @app.get("/api/state", summary="Machines, active runs, questions and processes as they are now")
     async def state() -> State:
         return client.board.snapshot()
-
-    @app.get("/api/site", summary="The site's machines and their bodies")
-    async def site_bodies() -> SiteInfo:
-        return shown
 
     @app.get("/api/places", summary="Shared places: who holds them, since when, and who waits")
     async def places() -> SharedPlaces:

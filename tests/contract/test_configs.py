@@ -6,13 +6,16 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
+from shapely.geometry import Polygon
 
 from conftest import PROJECT
 from tms_config.config import CONFIGS, load_site
 from tms_config.models import TURNED, MachineModel
 from tms_config.processes import table
 from tms_config.yaml_file import parse, read_yaml
+from tms_control.links import Links
 from tms_host.supervisor import render
 from tms_kit.subtask_server import load
 from tms_machine.record_lock import FLAG
@@ -53,6 +56,28 @@ def test_a_footprint_holds_the_body_at_any_angle(path: Path) -> None:
     box = model.footprint["body"]
     sides = [axis.xyz[i] - box.min[i] for i in (0, 1)] + [box.max[i] - axis.xyz[i] for i in (0, 1)]
     assert min(sides) >= corner
+
+
+@pytest.mark.parametrize("path", MODELS, ids=lambda path: path.stem)
+def test_what_a_machine_looks_like_fits_its_bodies(path: Path) -> None:
+    """Outlines cross themselves nowhere; in its start pose a machine stands on the ground, and has its size."""
+    model = parse(path, MachineModel)
+    assert {one.role for one in model.solids} == {"track", "body", "tool"} | (
+        {"arm"} if model.kind in ("backhoe", "bulldozer") else set()
+    )
+    assert all(Polygon(one.outline).is_valid and all(low < high for low, high in one.y) for one in model.solids)
+    start = np.array([[model.initial.get(name, 0.0) for name in model.joints]])
+    frames = Links(model, {one.link for one in model.solids}).places(start)
+    corners = [
+        (one.link, (frames[one.link][0] @ (x, y, z, 1.0))[:3])
+        for one in model.solids for x, z in one.outline for span in one.y for y in span
+    ]  # fmt: skip
+    assert abs(min(at[2] for _, at in corners)) < 0.1
+    low = np.min([box.min for box in model.footprint.values()], axis=0) - 0.15
+    high = np.max([box.max for box in model.footprint.values()], axis=0) + 0.15
+    before = {"boom_link", "arm_link", "bucket_link", "lift_link", "blade_link"}  # what reaches out of a footprint
+    outside = [(link, at) for link, at in corners if link not in before and not ((low < at) & (at < high)).all()]
+    assert outside == []
 
 
 def test_the_lock_of_a_record_ends_for_every_input() -> None:

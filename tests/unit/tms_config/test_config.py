@@ -358,7 +358,8 @@ def test_the_bridge_has_settings_of_its_own(tmp_path: Path) -> None:
         ("borders: {sim: {odom: odom}}", "borders.sim.sources.odom", NoSourceFacts()),
         ("borders: {sim: {sources: {odom: {period: 0.1, stamps: utc, frozen_after: 1, origin: o}}}}",
          "borders.sim.sources.odom", NoTopic("odom")),
-        ("geometry: {boom_joint: {parent: sky, child: boom_link, xyz: [0, 0, 0]}}\nshapes: {}\nbucket: null",
+        ("geometry: {boom_joint: {parent: sky, child: boom_link, xyz: [0, 0, 0]}}\nshapes: {}\nbucket: null\n"
+         "solids: []",
          "geometry.boom_joint", NoParent("sky")),
     ],
 )  # fmt: skip

@@ -6,6 +6,7 @@ import inspect
 import io
 import math
 import threading
+import zipfile
 from collections import Counter
 from collections.abc import AsyncIterator
 from datetime import datetime, timedelta
@@ -479,11 +480,17 @@ def test_the_site_is_described(client: Client) -> None:
     site = client.get("/api/site").json()
     (machine,) = site["machines"]
     assert (machine["name"], machine["kind"]) == ("zx200", "backhoe")
-    assert [link["joint"] for link in machine["arm"]] == ["boom_joint", "arm_joint", "bucket_joint", "bucket_end_joint"]
-    assert all(len(box["min"]) == len(box["max"]) == 3 for box in machine["footprint"])
     assert [one["child"] for one in machine["joints"]][-1] == "bucket_end_link"
-    assert {one["link"] for one in machine["bodies"]} <= {one["child"] for one in machine["joints"]}
-    assert machine["bucket"]["link"] == "bucket_link" and machine["vessel"] is None
+    assert {one["link"] for one in machine["solids"]} <= {one["child"] for one in machine["joints"]}
+    assert machine["solids"][0]["role"] == "track" and machine["solids"][0]["y"] == [[-1.44, -0.75], [0.75, 1.44]]
+
+
+def test_a_machine_as_a_ros_package(client: Client) -> None:
+    answer = client.get("/api/machines/zx200/urdf")
+    assert answer.headers["content-disposition"] == 'attachment; filename="zx200_description.zip"'
+    with zipfile.ZipFile(io.BytesIO(answer.content)) as found:
+        assert "zx200_description/urdf/zx200.urdf" in found.namelist()
+    assert client.get("/api/machines/zx999/urdf").json()["code"] == "NO_MACHINE"
 
 
 def test_areas_are_enabled_as_they_were_shown(client: Client, site_client: FakeSiteClient) -> None:
@@ -772,7 +779,7 @@ def test_every_endpoint_is_in_the_document(client: Client) -> None:
         "/api/runs/{run_id}/export", "/api/audit", "/api/machines/{name}/scene",
         "/api/processes/{name}/log", "/api/processes/{name}/restart",
         "/api/templates", "/api/areas", "/api/areas/check", "/api/areas/enable", "/api/ground", "/api/work",
-        "/api/work/report",
+        "/api/work/report", "/api/machines/{name}/urdf",
         "/api/places", "/api/palette", "/api/templates/{name}", "/api/places/{name}/revoke",
         "/api/recordings", "/api/recordings/{run_id}/export",
     }  # fmt: skip

@@ -21,23 +21,6 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
-    "/api/site": {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        /** The site's machines and their bodies */
-        get: operations["site_bodies_api_site_get"];
-        put?: never;
-        post?: never;
-        delete?: never;
-        options?: never;
-        head?: never;
-        patch?: never;
-        trace?: never;
-    };
     "/api/places": {
         parameters: {
             query?: never;
@@ -409,6 +392,40 @@ export interface paths {
         };
         /** What the planner of an excavator plans among now */
         get: operations["scene_api_machines__name__scene_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/site": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** The site's machines and their bodies */
+        get: operations["site_bodies_api_site_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/machines/{name}/urdf": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** A machine as a ROS 2 package in a zip file: URDF and meshes */
+        get: operations["urdf_api_machines__name__urdf_get"];
         put?: never;
         post?: never;
         delete?: never;
@@ -962,58 +979,6 @@ export interface components {
             };
         };
         /**
-         * BladeShape
-         * @description The lower edge of a blade.
-         */
-        BladeShape: {
-            /** Link */
-            link: string;
-            /**
-             * Edge
-             * @description x, z on its link, m
-             */
-            edge: number[];
-            /**
-             * Width
-             * @description m
-             */
-            width: number;
-        };
-        /**
-         * Box
-         * @description Corners of a box.
-         */
-        Box: {
-            /**
-             * Min
-             * @description m
-             */
-            min: number[];
-            /**
-             * Max
-             * @description m
-             */
-            max: number[];
-        };
-        /**
-         * BucketShape
-         * @description The inside of a bucket, the same over its width.
-         */
-        BucketShape: {
-            /** Link */
-            link: string;
-            /**
-             * Section
-             * @description x, z on its link, from the rear lip to the cutting edge, m
-             */
-            section: number[][];
-            /**
-             * Width
-             * @description m
-             */
-            width: number;
-        };
-        /**
          * Change
          * @description What one change of a record wrote.
          */
@@ -1286,52 +1251,6 @@ export interface components {
              * @description the machine was seen to stand still
              */
             confirmed: boolean;
-        };
-        /**
-         * Link
-         * @description A joint of an arm, as its side view needs it.
-         */
-        Link: {
-            /** Joint */
-            joint: string;
-            /**
-             * X
-             * @description m, on the parent link
-             */
-            x: number;
-            /**
-             * Z
-             * @description m, on the parent link
-             */
-            z: number;
-            /**
-             * Pitch
-             * @description rad, at joint angle 0
-             */
-            pitch: number;
-        };
-        /**
-         * LinkBox
-         * @description What a link's body lies in, in the frame of the link turned about y by `pitch`.
-         */
-        LinkBox: {
-            /**
-             * Min
-             * @description m
-             */
-            min: number[];
-            /**
-             * Max
-             * @description m
-             */
-            max: number[];
-            /** Link */
-            link: string;
-            /**
-             * Pitch
-             * @description rad
-             */
-            pitch: number;
         };
         /**
          * Log
@@ -2151,26 +2070,38 @@ export interface components {
             /** Kind */
             kind: string;
             /**
-             * Footprint
-             * @description in its base frame
-             */
-            footprint: components["schemas"]["Box"][];
-            /**
-             * Arm
-             * @description from the turning body to the tool, empty if it has no arm
-             */
-            arm: components["schemas"]["Link"][];
-            /**
              * Joints
              * @description parents before children; the first parent is base_link
              */
             joints: components["schemas"]["JointOrigin"][];
-            /** Bodies */
-            bodies: components["schemas"]["LinkBox"][];
-            bucket: components["schemas"]["BucketShape"] | null;
-            vessel: components["schemas"]["VesselShape"] | null;
-            blade: components["schemas"]["BladeShape"] | null;
-            tracks: components["schemas"]["TracksShape"] | null;
+            /**
+             * Solids
+             * @description what it looks like, for eyes only
+             */
+            solids: components["schemas"]["Solid"][];
+        };
+        /**
+         * Solid
+         * @description A part of what a machine looks like: an outline on its link, the same over each span of y.
+         */
+        Solid: {
+            /** Link */
+            link: string;
+            /**
+             * Role
+             * @enum {string}
+             */
+            role: "track" | "body" | "arm" | "tool";
+            /**
+             * Y
+             * @description from and to, m
+             */
+            y: number[][];
+            /**
+             * Outline
+             * @description x, z on the link, m
+             */
+            outline: number[][];
         };
         /**
          * Spot
@@ -2365,32 +2296,6 @@ export interface components {
             ja: string;
         };
         /**
-         * TracksShape
-         * @description Where two tracks touch the ground, in base_link.
-         */
-        TracksShape: {
-            /**
-             * Rear
-             * @description m, x
-             */
-            rear: number;
-            /**
-             * Front
-             * @description m, x
-             */
-            front: number;
-            /**
-             * Gauge
-             * @description m from middle to middle
-             */
-            gauge: number;
-            /**
-             * Width
-             * @description m, of one
-             */
-            width: number;
-        };
-        /**
          * Tree
          * @description The shape of a run's tree: one entry a node in each list, in the order of `nodes` of a state.
          */
@@ -2420,24 +2325,6 @@ export interface components {
              * @default []
              */
             templates: string[];
-        };
-        /**
-         * VesselShape
-         * @description The inside of a carrier's vessel, on its link.
-         */
-        VesselShape: {
-            /**
-             * Min
-             * @description m
-             */
-            min: number[];
-            /**
-             * Max
-             * @description m
-             */
-            max: number[];
-            /** Link */
-            link: string;
         };
         /**
          * Watched
@@ -2595,53 +2482,6 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["State"];
-                };
-            };
-            /** @description the request cannot be read */
-            400: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ReasonView"];
-                };
-            };
-            /** @description log in first */
-            401: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ReasonView"];
-                };
-            };
-            /** @description a value is wrong */
-            422: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ReasonView"];
-                };
-            };
-        };
-    };
-    site_bodies_api_site_get: {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        requestBody?: never;
-        responses: {
-            /** @description Successful Response */
-            200: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["SiteInfo"];
                 };
             };
             /** @description the request cannot be read */
@@ -4735,6 +4575,111 @@ export interface operations {
             };
             /** @description a module of the site is away or does not answer */
             503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+        };
+    };
+    site_bodies_api_site_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SiteInfo"];
+                };
+            };
+            /** @description the request cannot be read */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description log in first */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description a value is wrong */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+        };
+    };
+    urdf_api_machines__name__urdf_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                name: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/zip": unknown;
+                };
+            };
+            /** @description the request cannot be read */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description log in first */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description there is no such thing */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description a value is wrong */
+            422: {
                 headers: {
                     [name: string]: unknown;
                 };

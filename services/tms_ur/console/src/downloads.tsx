@@ -1,27 +1,20 @@
-// Links that save the same thing as files of several forms.
+// Links that save files.
 import { useTranslation } from "react-i18next";
 
 interface Props {
   id: string;
-  label: string; // key
-  forms: string[];
-  href: (form: string) => string;
+  label: string; // key: what they are files of
+  files: readonly (readonly [name: string, href: string])[];
 }
 
-export function Downloads({ id, label, forms, href }: Props) {
+export function Downloads({ id, label, files }: Props) {
   const { t } = useTranslation();
   return (
     <div id={id} className="bar">
       <span>{t(label)}:</span>
-      {forms.map((form) => (
-        <a
-          key={form}
-          className="button"
-          href={href(form)}
-          download=""
-          aria-label={`${t(label)}: ${form.toUpperCase()}`}
-        >
-          {form.toUpperCase()}
+      {files.map(([name, href]) => (
+        <a key={name} className="button" href={href} download="" aria-label={`${t(label)}: ${name}`}>
+          {name}
         </a>
       ))}
     </div>

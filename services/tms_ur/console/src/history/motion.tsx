@@ -7,7 +7,7 @@ import { Table } from "../table";
 import { PastMap } from "./past_map";
 import { type Drawn, indexAt, machinesOf, plotsOf, seriesOf, speedsOf, valuesAt } from "./recording";
 
-const FORMS = ["csv", "mcap"];
+const FORMS = ["CSV", "MCAP"];
 const Plot = lazy(() => import("../plot"));
 
 interface Props {
@@ -39,7 +39,7 @@ export function Motion({ run, first, recording, time, onTime }: Props) {
           </select>
         </label>
       </div>
-      <Downloads id="exports_motion" label="export_motion" forms={FORMS} href={motionFile(run)} />
+      <Downloads id="exports_motion" label="export_motion" files={FORMS.map((form) => [form, motionFile(run, form)])} />
       {plots.map((plot) => (
         <OnePlot key={`${chosen} ${plot.title}`} machine={chosen} plot={plot} seconds={seconds} onTime={onTime} />
       ))}
@@ -105,4 +105,5 @@ function Values({ recording, seconds }: { recording: Recording; seconds: number 
 
 const fixed = (value: number | undefined) => (value === undefined ? "-" : value.toFixed(2));
 
-const motionFile = (run: string) => (form: string) => `/api/recordings/${encodeURIComponent(run)}/export?form=${form}`;
+const motionFile = (run: string, form: string) =>
+  `/api/recordings/${encodeURIComponent(run)}/export?form=${form.toLowerCase()}`;

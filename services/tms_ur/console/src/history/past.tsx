@@ -20,7 +20,7 @@ import { Motion } from "./motion";
 import { recordedUntil } from "./recording";
 import { useRecording } from "./use_recording";
 
-const FORMS = ["json", "csv", "mcap"];
+const FORMS = ["JSON", "CSV", "MCAP"];
 
 interface Props {
   id: string;
@@ -57,7 +57,7 @@ function Line({ id, run, seconds, journal, live }: Props & { journal: Journal; l
     <section id="past" ref={section}>
       <h2 id="past_title">{`${t("run")} ${id}`}</h2>
       <Values run={run} />
-      <Downloads id="exports" label="export" forms={FORMS} href={journalFile(id)} />
+      <Downloads id="exports" label="export" files={FORMS.map((form) => [form, journalFile(id, form)])} />
       <Receipts journal={journal} onTime={setChosen} />
       <p id="journal_cut" className="bad">
         {journal.cut ? t("journal_cut", { number: journal.events.length }) : ""}
@@ -125,4 +125,5 @@ function Receipts({ journal, onTime }: { journal: Journal; onTime: (time: number
   );
 }
 
-const journalFile = (run: string) => (form: string) => `/api/runs/${encodeURIComponent(run)}/export?form=${form}`;
+const journalFile = (run: string, form: string) =>
+  `/api/runs/${encodeURIComponent(run)}/export?form=${form.toLowerCase()}`;

@@ -6,6 +6,7 @@ import { corners, hull, shadow } from "./outline";
 import { links, placed, put } from "./pose";
 import { fieldsOf, poseOf } from "./pose_record";
 import { prisms } from "./shapes";
+import { sideOf } from "./side_view";
 import { lengthened } from "./trails";
 import { dragged, fitted, gridStep, placeAt, zoomed } from "./view";
 
@@ -23,8 +24,6 @@ const EXCAVATOR: SiteMachine = {
   name: "zx200",
   model: "zx200",
   kind: "backhoe",
-  footprint: [{ min: [-2, -1.8, 0], max: [2.3, 1.7, 1.121] }],
-  arm: [],
   joints: [
     joint("base_joint", "base_link", "track_link", [0, 0, 0], 0, "y"),
     joint("swing_joint", "track_link", "body_link", [0.10787, -0.034301, 1.1206], 0, "z"),
@@ -32,26 +31,33 @@ const EXCAVATOR: SiteMachine = {
     joint("arm_joint", "boom_link", "arm_link", [4.7878, 0.010957, 2.9959], 0.2961945914, "y"),
     joint("bucket_joint", "arm_link", "bucket_link", [1.8954, -0.023546, 2.1809], -0.1605847774, "y"),
   ],
-  bodies: [
-    { link: "track_link", min: [-2.015, -1.838, 0], max: [2.335, 1.74, 1.121], pitch: 0 },
-    { link: "body_link", min: [-2.896, -1.274, 0], max: [0.2, 1.509, 2], pitch: 0 },
-    { link: "boom_link", min: [-0.11, -0.405, -0.16], max: [5.66, 0.483, 1.28], pitch: -0.5591 },
-    { link: "arm_link", min: [-0.4, -0.25, -0.3], max: [2.9, 0.25, 0.4], pitch: -0.8555 },
-    { link: "bucket_link", min: [-0.3, -0.569, -0.1], max: [1.257, 0.557, 1.05], pitch: 0 },
+  solids: [
+    {
+      link: "track_link",
+      role: "track",
+      y: [
+        [-1.44, -0.75],
+        [0.75, 1.44],
+      ],
+      outline: [
+        [-2, 0],
+        [2, 0],
+        [2, 0.9],
+        [-2, 0.9],
+      ],
+    },
+    {
+      link: "boom_link",
+      role: "arm",
+      y: [[-0.21, 0.29]],
+      outline: [
+        [0.05, -0.1],
+        [4.74, 2.86],
+        [2.27, 2.91],
+        [-0.11, 0.03],
+      ],
+    },
   ],
-  bucket: {
-    link: "bucket_link",
-    section: [
-      [0.06, -0.08],
-      [-0.14, 0.48],
-      [0.56, 0.87],
-      [1.24, 0.8],
-    ],
-    width: 1.05,
-  },
-  vessel: null,
-  blade: null,
-  tracks: { rear: -1.685, front: 1.685, gauge: 2.19, width: 0.69 },
 };
 const POSE = new Map([
   ["boom_joint", -0.8029],
@@ -73,19 +79,14 @@ test("links are where the joints put them", () => {
   expect(tip(new Map([...POSE, ["boom_joint", -1.0]]))[2]).toBeGreaterThan(z); // less is up
 });
 
-test("bodies follow the figures of the machine's file, and cover it from above", () => {
+test("each span of a solid is a prism, which its link carries", () => {
   const frames = links(EXCAVATOR, POSE, placed(0, 0, 0));
   const shapes = prisms(EXCAVATOR);
-  expect(new Set(shapes.map((one) => one.link))).toEqual(
-    new Set(["base_link", "body_link", "boom_link", "arm_link", "bucket_link"]),
-  );
-  const belts = shapes.filter((one) => one.role === "track");
-  expect(belts.map((one) => [one.y0, one.y1])).toEqual(
-    [
-      [-1.44, -0.75],
-      [0.75, 1.44],
-    ].map((pair) => pair.map((y) => expect.closeTo(y, 5))),
-  );
+  expect(shapes.map((one) => [one.role, one.y0, one.y1])).toEqual([
+    ["track", -1.44, -0.75],
+    ["track", 0.75, 1.44],
+    ["arm", -0.21, 0.29],
+  ]);
   const arm = shapes.find((one) => one.link === "boom_link");
   const frame = frames.get("boom_link");
   const top = arm && frame ? Math.max(...corners(arm, frame).map(([, , z]) => z)) : 0;
@@ -94,25 +95,12 @@ test("bodies follow the figures of the machine's file, and cover it from above",
   expect(arm && frame ? shadow(arm, frame).length : 0).toBeGreaterThanOrEqual(4);
 });
 
-test("a carrier has a vessel without a rear wall, a deck and a cab", () => {
-  const carrier: SiteMachine = {
-    ...EXCAVATOR,
-    joints: [joint("vessel_pin_joint", "base_link", "vessel_link", [-3.0153, 0, 0.94605], 0, "y")],
-    bodies: [{ link: "vessel_link", min: [-0.583, -1.283, -0.087], max: [3.739, 1.317, 1.926], pitch: 0 }],
-    bucket: null,
-    vessel: { link: "vessel_link", min: [0.15, -0.875, 0.2], max: [3.11, 0.875, 1.3] },
-  };
-  expect(prisms(carrier).map((one) => one.role)).toEqual([
-    "track",
-    "track",
-    "body",
-    "body",
-    "body",
-    "tool",
-    "tool",
-    "tool",
-    "tool",
-  ]);
+test("the view from the side shows the arm straight ahead, whatever way the machine heads", () => {
+  const ahead = sideOf(EXCAVATOR, prisms(EXCAVATOR), new Map([...POSE, ["swing_joint", Math.PI]]));
+  expect(ahead.map((one) => one.role)).toEqual(["track", "track", "arm"]);
+  const tip = ahead[2]?.points[1] ?? [0, 0];
+  expect(tip[0]).toBeCloseTo(4.2, 1); // of the boom: ahead ...
+  expect(tip[1]).toBeCloseTo(5.9, 1); // ... and up
 });
 
 test("a hull has no points inside", () => {

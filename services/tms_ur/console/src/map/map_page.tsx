@@ -2,6 +2,7 @@
 
 import { useMemo } from "react";
 import { useTranslation } from "react-i18next";
+import { Downloads } from "../downloads";
 import { useLive } from "../live";
 import { get } from "../server";
 import { useList } from "../use_list";
@@ -26,11 +27,18 @@ export default function MapPage({ rest }: { rest: string }) {
         <div id="arms" className="cards">
           {state?.machines.map((machine) => {
             const body = bodies.get(machine.name);
-            return body && body.arm.length > 1 && machine.joints.length > 0 ? (
+            return body && machine.joints.length > 0 ? (
               <SideView key={machine.name} machine={machine} body={body} />
             ) : null;
           })}
         </div>
+      )}
+      {site && (
+        <Downloads
+          id="urdf"
+          label="urdf"
+          files={site.machines.map(({ name }) => [name, `/api/machines/${name}/urdf`])}
+        />
       )}
     </>
   );

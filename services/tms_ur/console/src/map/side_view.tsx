@@ -1,49 +1,44 @@
-// Side view of an excavator's arm from its joint angles: x ahead, z up, both on the turning body.
+// A machine from the side, as its joints tell: what turns about the vertical is shown straight ahead.
 
+import { useMemo } from "react";
 import { useTranslation } from "react-i18next";
 import { Badge } from "../badge";
 import type { Machine, SiteMachine } from "../models";
+import { svgPoints } from "./outline";
+import { anglesOf, links, placed, put } from "./pose";
+import { type Prism, prisms } from "./shapes";
 
-const SCALE = 26; // px a metre
-const WIDTH = 360;
-const HEIGHT = 300;
-const GROUND = HEIGHT - 70;
+const SPAN = { x: -4.5, z: -3, width: 14.5, height: 12 }; // m: the longest arm in all its poses
+const FORWARD = "y"; // the axis of joints that a view from the side shows
 
-/** Points of the arm, m: a joint's angle turns all links beyond it about y; positive is down and in. */
-export function chain(arm: SiteMachine["arm"], angles: ReadonlyMap<string, number>) {
-  let [turned, x, z] = [0, 0, 0];
-  return arm.map((link) => {
-    x += link.x * Math.cos(turned) + link.z * Math.sin(turned);
-    z += -link.x * Math.sin(turned) + link.z * Math.cos(turned);
-    turned += link.pitch + (link.joint === "bucket_end_joint" ? 0 : (angles.get(link.joint) ?? 0));
-    return { joint: link.joint, x, z };
+/** The outlines of a machine's prisms from the side, x ahead and z up, m. */
+export function sideOf(body: SiteMachine, shapes: readonly Prism[], angles: ReadonlyMap<string, number>) {
+  const shown = body.joints.filter((one) => one.axis === FORWARD).map((one) => one.joint);
+  const frames = links(body, new Map([...angles].filter(([joint]) => shown.includes(joint))), placed(0, 0, 0));
+  return shapes.flatMap((one) => {
+    const frame = frames.get(one.link);
+    const points = frame ? one.outline.map(([x, z]) => put(frame, [x, one.y0, z])) : [];
+    return frame ? [{ role: one.role, points: points.map(([x, , z]) => [x, z] as const) }] : [];
   });
 }
 
 export function SideView({ machine, body }: { machine: Machine; body: SiteMachine }) {
   const { t } = useTranslation();
-  const angles = new Map(machine.joints.map((joint) => [joint.name, joint.position]));
-  const points = chain(body.arm, angles).map(({ joint, x, z }) => ({
-    joint,
-    x: (80 + x * SCALE).toFixed(1),
-    y: (GROUND - (1.12 + z) * SCALE).toFixed(1),
-  }));
+  const shapes = useMemo(() => prisms(body), [body]);
   const degrees = (angle: number) => ((angle * 180) / Math.PI).toFixed(1);
   return (
     <figure className="card">
       <svg
-        className="side"
+        className="side machine"
         role="img"
-        viewBox={`0 0 ${WIDTH} ${HEIGHT}`}
+        viewBox={`${SPAN.x} ${-SPAN.z - SPAN.height} ${SPAN.width} ${SPAN.height}`}
         data-machine={machine.name}
         aria-label={t("side_view", { name: machine.name })}
       >
-        <path className="ground" d={`M0 ${GROUND} H${WIDTH}`} />
-        <rect className="body" x={20} y={HEIGHT - 132} width={74} height={52} />
-        <rect className="body" x={14} y={HEIGHT - 98} width={100} height={28} rx={14} />
-        <polyline className="arm" points={points.map((one) => `${one.x},${one.y}`).join(" ")} />
-        {points.slice(0, -1).map((one) => (
-          <circle key={one.joint} cx={one.x} cy={one.y} r={4} />
+        <path className="ground" d={`M${SPAN.x} 0 h${SPAN.width}`} />
+        {sideOf(body, shapes, anglesOf(machine)).map((one, index) => (
+          // biome-ignore lint/suspicious/noArrayIndexKey: the bodies of a machine do not change
+          <polygon key={index} className={one.role} points={svgPoints(one.points)} />
         ))}
       </svg>
       <figcaption>

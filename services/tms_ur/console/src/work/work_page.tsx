@@ -30,14 +30,19 @@ function useWork(day: string): { work: Work | null; error: Error | null } {
 export default function WorkPage({ rest }: { rest: string }) {
   const { t, i18n } = useTranslation();
   const { work, error } = useWork(rest);
-  const report = (day: string) => (form: string) =>
-    `/api/work/report?day=${day}&form=${form}&language=${i18n.language}`;
+  const report = (day: string, form: string) => `/api/work/report?day=${day}&form=${form}&language=${i18n.language}`;
   return (
     <>
       <h2>{t("p_work")}</h2>
       <Problem id="work_problem" error={error} />
       {work && <Days day={work.day} />}
-      {work && <Downloads id="daily_report" label="daily_report" forms={["pdf", "html"]} href={report(work.day)} />}
+      {work && (
+        <Downloads
+          id="daily_report"
+          label="daily_report"
+          files={["PDF", "HTML"].map((form) => [form, report(work.day, form.toLowerCase())] as const)}
+        />
+      )}
       {work && <Figures work={work} />}
     </>
   );
