@@ -137,6 +137,25 @@ def test_on_a_phone_everything_is_in_reach(page: Page, address: str, yard: Waiti
     assert found.violations_count == 0, found.generate_report()
 
 
+def test_a_process_is_whole_on_a_phone(page: Page, address: str, yard: Yard) -> None:
+    page.set_viewport_size({"width": 390, "height": 844})
+    name = "zx200:subtask_zx200_excavate_simple_plan"
+    rows = [Process(name=name, state="RUNNING", pid=7, uptime=65.0, cpu=3.0, memory=90_000_000)]
+    yard.board.put_host(Host(name="site-pc-1", processes=rows))
+    page.goto(f"{address}/#system")
+    row = page.locator(f"[data-process='{name}']")
+    expect(row).to_contain_text("Running")
+    for part in (row.get_by_text("Running"), row.get_by_role("button").first, row.get_by_role("button").last):
+        box = part.bounding_box()
+        assert box and box["x"] >= 0 and box["x"] + box["width"] <= 390
+    table = page.get_by_role("region", name="Processes")
+    assert table.evaluate("it => it.scrollWidth <= it.clientWidth"), "nothing is to be scrolled sideways"
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390
+    assert "CPU" in row.evaluate("it => [...it.cells].map((one) => getComputedStyle(one, '::before').content).join()")
+    found = Axe().run(page)
+    assert found.violations_count == 0, found.generate_report()
+
+
 def test_a_run_that_waits_for_its_process_moves_nothing_below_it(page: Page, address: str, yard: Yard) -> None:
     """Its reason has an action; a finger is over the tasks."""
     yard.board.put_runs([])

@@ -11,6 +11,7 @@ import { Said } from "../said";
 import { Table } from "../table";
 import { ProcessLog } from "./log";
 import { type Row, rowsOf } from "./rows";
+import "./processes.css";
 
 const HEADS = 8; // columns
 const QUIET = new Set(["RUNNING", "STOPPED"]); // states of which supervisord only tells the time
@@ -68,15 +69,15 @@ function Line({ row: { host, process }, running, open, onOpen }: LineProps) {
   return (
     <tr data-process={name}>
       <td>{name}</td>
-      <td>{host}</td>
+      <td data-label={t("host")}>{host}</td>
       <td>
         <Badge state={shownState(process)} />
         {!QUIET.has(process.state) && <Said reason={process.detail} done="logs" />}
       </td>
-      <td>{process.state === "RUNNING" ? duration(process.uptime) : "-"}</td>
-      <td>{process.pid ? `${process.cpu.toFixed(1)} %` : "-"}</td>
-      <td>{process.pid ? `${Math.round(process.memory / 1e6)} MB` : "-"}</td>
-      <td>{process.restarts}</td>
+      <td data-label={t("uptime")}>{process.state === "RUNNING" ? duration(process.uptime) : "-"}</td>
+      <td data-label={t("cpu")}>{process.pid ? `${process.cpu.toFixed(1)} %` : "-"}</td>
+      <td data-label={t("memory")}>{process.pid ? `${Math.round(process.memory / 1e6)} MB` : "-"}</td>
+      <td data-label={t("restarts")}>{process.restarts}</td>
       <td className="bar">
         <button
           type="button"
