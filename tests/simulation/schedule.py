@@ -117,7 +117,7 @@ class Schedule:
         if act.full:
             notes.full = until
         else:
-            notes.stalls = self.site.scheduler.disk.stalls = until
+            notes.stalls = self.site.scheduler.disk.stalls = max(until, notes.stalls)
         self.world.tell("disk", f"{'is full' if act.full else 'stalls'} for {act.seconds:.2f} s")
 
     def _clock(self, unit: Unit, act: p.Clock) -> None:

@@ -104,6 +104,10 @@ def test_a_machine_that_has_stopped_a_goal_is_watched_while_the_disk_stalls() ->
     assert Schedule(20372777).run().violation == ""
 
 
+def test_a_short_stall_of_the_disk_does_not_end_a_longer_one() -> None:
+    assert Schedule(30304008).run().violation == ""
+
+
 def test_a_rearm_whose_answer_is_lost_is_one() -> None:
     """The disk had it, and the gateway was killed before it could answer."""
     assert Schedule(2869398733).run().violation == ""
