@@ -4,7 +4,7 @@ import threading
 from collections.abc import Callable, Iterable
 
 from tms_config.clock import monotonic, utc_now
-from tms_ur.models import ActiveRun, Host, LastStop, Machine, Place, Process, Question, Scheduler
+from tms_ur.models import ActiveRun, Host, LastStop, Load, Machine, Place, Process, Question, Scheduler
 from tms_ur.place_models import SharedPlaces
 from tms_ur.reason_view import view
 from tms_ur.reasons import MachineSilent, MachineUnheard
@@ -14,6 +14,7 @@ from tms_ur.watch_models import SeenBy, Watched
 MACHINE_SILENT = 2.0  # s, four periods of a machine's gateway
 SCHEDULER_SILENT = 5.0  # s, five periods of the scheduler's list of runs
 WAY_LIVES = 3.0  # s, three periods of a navigation that tells the way that it drives
+LOAD_LIVES = 3.0  # s: tms:ground tells loads all the time
 HOST_SILENT = 6.0  # s, three periods of a host agent; after that its PC may have no power
 
 
@@ -28,6 +29,7 @@ class Board:
         self._questions: list[Question] = []
         self._places: dict[str, tuple[Place, float]] = {}
         self._ways: dict[str, tuple[list[tuple[float, float]], float]] = {}
+        self._loads: dict[str, tuple[Load, float]] = {}
         self._stops: dict[str, LastStop] = {}
         self._shared = SharedPlaces()
         self._watched: dict[str, Watched] = {}
@@ -63,6 +65,14 @@ class Board:
             before, _ = self._ways.get(name, (None, None))
             self._ways[name] = (way, self._clock())
         if before != way:
+            self._publish()
+
+    def put_load(self, name: str, load: Load) -> None:
+        """Take what a machine carries."""
+        with self._lock:
+            before, _ = self._loads.get(name, (None, None))
+            self._loads[name] = (load, self._clock())
+        if before != load:
             self._publish()
 
     def put_stop(self, name: str, stop: LastStop) -> None:
@@ -133,7 +143,11 @@ class Board:
                 time=utc_now(),
                 machines=[
                     _aged(machine, now, at, self._places.get(name), self._stops.get(name)).model_copy(
-                        update={"watched": self._watched.get(name, Watched()), "way": self._way(name, now)}
+                        update={
+                            "watched": self._watched.get(name, Watched()),
+                            "way": self._way(name, now),
+                            "load": self._load(name, now),
+                        }
                     )
                     for name, (machine, at) in self._machines.items()
                 ],
@@ -148,6 +162,10 @@ class Board:
     def _way(self, name: str, now: float) -> list[tuple[float, float]]:
         way, at = self._ways.get(name, ([], now))
         return way if now - at < WAY_LIVES else []
+
+    def _load(self, name: str, now: float) -> Load | None:
+        load, at = self._loads.get(name, (None, now))
+        return load if now - at < LOAD_LIVES else None
 
     def _publish(self) -> None:
         for listener in self._listeners:

@@ -7,6 +7,7 @@ from builtin_interfaces.msg import Time
 from rcl_interfaces.msg import ParameterType
 from tms_msg_areas import msg as areas
 from tms_msg_db import msg as db
+from tms_msg_ground import msg as ground
 from tms_msg_host import msg as host
 from tms_msg_rc import msg as rc
 from tms_msg_sp import msg as sp
@@ -19,7 +20,7 @@ from tms_reason import wire
 from tms_reason.reason import Foreign
 from tms_reason.units import unit
 from tms_ur.data_models import Change, Record, SensingInput
-from tms_ur.models import ActiveRun, Event, Joint, LastStop, Machine, Process, Question, Receipt, Run, Template
+from tms_ur.models import ActiveRun, Event, Joint, LastStop, Load, Machine, Process, Question, Receipt, Run, Template
 from tms_ur.models import MachineState as Shown
 from tms_ur.place_models import PlaceRequest, PlaceState, SharedPlace, SharedPlaces
 from tms_ur.reason_view import ReasonView, of_line, view
@@ -105,6 +106,13 @@ def receipt(made: rc.StopReceipt) -> Receipt:
 def last_stop(made: rc.StopReceipt) -> LastStop:
     """For the console: what a card tells of the last stop of a machine."""
     return LastStop(stamp=when(made.stamp), confirmed=made.confirmed)
+
+
+def load(told: ground.SoilLoad) -> Load:
+    """For the console: what a machine carries, no finer than a card shows it."""
+    return Load(
+        mass=round(told.mass, -1), loose=round(told.loose, 2), capacity=round(told.capacity, 2), measured=told.measured
+    )
 
 
 def process(row: host.Process, on_demand: bool) -> Process:

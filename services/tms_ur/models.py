@@ -39,6 +39,15 @@ class LastStop(Model):
     confirmed: bool = Field(description="the machine was seen to stand still")
 
 
+class Load(Model):
+    """Soil in a bucket or a vessel."""
+
+    mass: float = Field(description="kg")
+    loose: float = Field(description="m3, as it is carried")
+    capacity: float = Field(description="m3, loose, that it holds at most")
+    measured: bool = Field(description="weighed or scanned; else estimated from motions and shapes")
+
+
 class Machine(Model):
     """A machine as its gateway sees it."""
 
@@ -62,6 +71,7 @@ class Machine(Model):
     place: Place | None = Field(default=None, description="null: never told")
     place_age: float | None = Field(default=None, description="s since the place was told, null: never")
     way: list[tuple[float, float]] = Field(default=[], description="places of the way that it drives now [m, map]")
+    load: Load | None = Field(default=None, description="null: it carries no soil, or nobody tells")
     joints: list[Joint] = Field(default=[])
     joint_age: float | None = Field(default=None, description="s since the last joint states, null: never")
     age: float | None = Field(default=None, description="s since the gateway last reported, null: never")

@@ -1,6 +1,7 @@
 """The API's side of ROS: blocking calls for worker threads, and topics that update the board."""
 
 from datetime import date, datetime
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from std_msgs.msg import String
@@ -18,6 +19,7 @@ from tms_msg_db.srv import (
     RemoveTask,
     SetParameter,
 )
+from tms_msg_ground.msg import SoilLoad
 from tms_msg_host.msg import Processes
 from tms_msg_host.srv import ControlProcess, ReadLog
 from tms_msg_rc.msg import MachineState, StopReceipt
@@ -82,6 +84,8 @@ class SiteClient(RunCalls):
             ros.subscribe(MachineState, f"/{name}/rc/state", self._on_machine, latched=True)
             ros.subscribe(StopReceipt, f"/{name}/rc/receipts", self._on_receipt, depth=20, latched=True)
             ros.prepare(StopMachine, f"/{name}/rc/stop")
+            if site.file.ground is not None:
+                ros.subscribe(SoilLoad, f"/{name}/soil_load", partial(self._on_load, name), latched=True)
         ros.subscribe(RunStates, "/tms/runs", self._on_runs, latched=True)
         ros.subscribe(String, "/tms/palette", self._on_palette, latched=True)
         ros.subscribe(Processes, "/tms/host/processes", self._on_processes, depth=10, latched=True)
@@ -95,6 +99,9 @@ class SiteClient(RunCalls):
 
     def _on_receipt(self, message: StopReceipt) -> None:
         self.board.put_stop(message.machine, messages.last_stop(message))
+
+    def _on_load(self, name: str, message: SoilLoad) -> None:
+        self.board.put_load(name, messages.load(message))
 
     def _on_runs(self, message: RunStates) -> None:
         runs = [messages.active_run(run) for run in message.runs]

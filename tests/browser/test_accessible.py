@@ -29,6 +29,8 @@ PLACES = {
     "data": (["[aria-label^='History of']"], "#list_records tr"),
     "tasks": ([], "#list_stored tr"),
     "system": ([], "#list_processes tr"),
+    "work": ([], "#list_work tr"),
+    "components": ([], "#page [data-path='0.3']"),
 }
 
 

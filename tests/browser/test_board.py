@@ -10,7 +10,7 @@ from playwright.sync_api import Page, expect
 
 from tms_config.clock import utc_now
 from tms_decision.reasons import ProcessAway, SoftwareStop
-from tms_ur.models import Host, LastStop, Machine, Process, Run
+from tms_ur.models import Host, LastStop, Load, Machine, Process, Run
 from tms_ur.place_models import PlaceRequest, SharedPlace, SharedPlaces
 from tms_ur.reason_view import of_line, view
 from unit.tms_ur.fakes import NOON
@@ -83,6 +83,9 @@ def test_the_light_and_the_card_tell_what_is(page: Page, address: str, yard: Wai
     expect(card.get_by_role("button", name="Re-arm zx200")).to_have_count(0)
     yard.board.put_machine(Machine(name="zx200", state="moving", joint_age=0.1))
     expect(light).to_have_text("▶ Moving zx200")
+    expect(card.locator("[data-part=load]")).to_have_count(0)
+    yard.board.put_load("zx200", Load(mass=1280.0, loose=0.7, capacity=0.92, measured=False))
+    expect(card.locator("[data-part=load]")).to_contain_text("about 0.70 of 0.92 m³, 1.28 t (estimated)")
     yard.board.put_stop("zx200", LastStop(stamp=datetime(2026, 1, 31, 9, 5, tzinfo=timezone.utc), confirmed=True))
     yard.receive(latch=view(SoftwareStop()))
     yard.board.put_runs([])

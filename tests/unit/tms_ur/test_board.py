@@ -2,8 +2,11 @@
 
 from dataclasses import dataclass, field
 
+from tms_msg_ground.msg import SoilLoad
+
+from tms_ur import messages
 from tms_ur.board import WAY_LIVES, Board
-from tms_ur.models import ActiveRun, Host, Joint, LastStop, Machine, Place, Process
+from tms_ur.models import ActiveRun, Host, Joint, LastStop, Load, Machine, Place, Process
 from tms_ur.reason_view import view
 from tms_ur.reasons import MachineSilent
 
@@ -106,6 +109,19 @@ def test_a_place_has_an_age_of_its_own() -> None:
     watched.board.put_place("zx200", place)
     assert (watched.changes, watched.board.snapshot().machines[0].place_age) == (changes, 0.0)
     assert watched.board.snapshot().machines[1].place_age is None
+
+
+def test_a_load_is_shown_while_it_is_told() -> None:
+    watched = Watched()
+    load = messages.load(SoilLoad(mass=1283.4, loose=1.234, bank=1.0, capacity=5.9))
+    assert load == Load(mass=1280.0, loose=1.23, capacity=5.9, measured=False)
+    for told, changes in ((load, 1), (load, 1), (load.model_copy(update={"loose": 1.24}), 2)):
+        watched.board.put_load("zx200", told)
+        assert watched.changes == changes
+    watched.now += 2.9
+    assert watched.board.snapshot().machines[0].load == told
+    watched.now += 0.2
+    assert watched.board.snapshot().machines[0].load is None
 
 
 def test_a_way_is_shown_while_its_navigation_tells_it() -> None:

@@ -39,7 +39,8 @@ def test_places_of_machines_and_their_ages(monkeypatch: pytest.MonkeyPatch) -> N
         poll_in_thread=lambda _, step, __: step(),
     )  # fmt: skip
     machines = {name: SimpleNamespace(hardware={}) for name in BORDERS}
-    site: Any = SimpleNamespace(file=SimpleNamespace(machines=machines), border=BORDERS.__getitem__, area_files=[])
+    file = SimpleNamespace(machines=machines, ground=None)
+    site: Any = SimpleNamespace(file=file, border=BORDERS.__getitem__, area_files=[])
     shown = {machine.name: machine for machine in SiteClient(ros, site).board.snapshot().machines}
     assert {name: one.place for name, one in shown.items()} == {
         "digger": Place(x=1.23, y=0.0, yaw=0.0), "dump": Place(x=5.0, y=0.0, yaw=0.0),

@@ -1253,6 +1253,32 @@ export interface components {
             confirmed: boolean;
         };
         /**
+         * Load
+         * @description Soil in a bucket or a vessel.
+         */
+        Load: {
+            /**
+             * Mass
+             * @description kg
+             */
+            mass: number;
+            /**
+             * Loose
+             * @description m3, as it is carried
+             */
+            loose: number;
+            /**
+             * Capacity
+             * @description m3, loose, that it holds at most
+             */
+            capacity: number;
+            /**
+             * Measured
+             * @description weighed or scanned; else estimated from motions and shapes
+             */
+            measured: boolean;
+        };
+        /**
          * Log
          * @description The end of a log.
          */
@@ -1353,6 +1379,8 @@ export interface components {
                 number,
                 number
             ][];
+            /** @description null: it carries no soil, or nobody tells */
+            load?: components["schemas"]["Load"] | null;
             /**
              * Joints
              * @default []

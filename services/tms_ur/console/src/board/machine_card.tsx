@@ -31,6 +31,7 @@ export function MachineCard({ machine, run }: Props) {
       {machine.state !== "silent" && <Badge state={armedState(machine)} />}
       <Why machine={machine} run={run} />
       {run && <Work machine={machine} run={run} />}
+      {machine.load && <Carried load={machine.load} />}
       <p className="small">
         <Proof machine={machine} />{" "}
         <span data-part="age">
@@ -105,6 +106,20 @@ function Work({ machine, run }: { machine: Machine; run: ActiveRun }) {
           </code>{" "}
         </span>
       ))}
+    </p>
+  );
+}
+
+/** Soil in the bucket or the vessel. */
+function Carried({ load: { loose, capacity, mass, measured } }: { load: NonNullable<Machine["load"]> }) {
+  const { t } = useTranslation();
+  const figures = { loose: loose.toFixed(2), capacity: capacity.toFixed(2), mass: (mass / 1000).toFixed(2) };
+  return (
+    <p data-part="load">
+      <label>
+        {t("load")} <progress max={capacity} value={Math.min(loose, capacity)} />
+      </label>{" "}
+      {t(measured ? "load_measured" : "load_estimated", figures)}
     </p>
   );
 }
