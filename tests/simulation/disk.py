@@ -22,6 +22,7 @@ class Entry:
 
 FULL = "No space left on device"
 GROUP = 0.03  # s that lines wait for others
+WRITTEN = 0.03  # s that some notes take, one after the other
 
 
 @dataclass

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from simulation.disk import Notes
+from simulation.disk import WRITTEN, Notes
 from simulation.lease import PermitProcess, Topic
 from simulation.machine import SPEED
 from simulation.order import Order
@@ -242,9 +242,9 @@ class GatewayProcess(PermitProcess):
         self.unit.published(State(core.latch.cause, core.latch.hold, core.by_hand, ready, busy))
 
     def _forgotten(self) -> bool:
-        """Whether all who had heard the last press were killed while the disk hung: then nothing is left of it."""
-        return all(one.life != life and self.pressed_at <= one.lost_at <= self.notes.stalls
-                   for one, life in self.heard_with)  # fmt: skip
+        """Whether all who could have heard the last press were killed before the disk had it: nothing is left of it."""
+        noted = max(self.notes.stalls, self.pressed_at + WRITTEN)
+        return all((one.life != life or not one.alive) and one.lost_at <= noted for one, life in self.heard_with)
 
     def _send(self, number: int) -> None:
         if self.latched and not self._forgotten():

@@ -104,6 +104,11 @@ def test_a_machine_that_has_stopped_a_goal_is_watched_while_the_disk_stalls() ->
     assert Schedule(20372777).run().violation == ""
 
 
+def test_a_press_is_lost_with_all_who_could_have_heard_it() -> None:
+    """Host agent and scheduler were dead already, and the gateway was killed before the disk had its latch."""
+    assert Schedule(40298452).run().violation == ""
+
+
 def test_a_short_stall_of_the_disk_does_not_end_a_longer_one() -> None:
     assert Schedule(30304008).run().violation == ""
 
