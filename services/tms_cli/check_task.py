@@ -12,7 +12,7 @@ from tms_msg_ts.srv import CheckTask
 
 from tms_cli import session, templates
 from tms_cli.task_file import read, xml_files
-from tms_cli.words import reason, say, sentence
+from tms_cli.words import reason, say, sentence, with_command
 from tms_config.clock import monotonic
 from tms_reason.errors import RosError, TaskError, TmsError
 from tms_ts import bt
@@ -126,13 +126,15 @@ class SchedulerClient(AbstractContextManager["SchedulerClient"]):
 def structure(client: SchedulerClient, what: str, text: str, folder: Path | None = None) -> CheckedTask:
     """Check the structure of a tree, without a site."""
     report = client.with_templates(lambda known: bt.check(text, folder=folder, templates=known, cpp=client.cpp))
-    warnings = [sentence(Placed(Line(line), warning)) for line, warning in report.warnings]
+    warnings = [with_command(Placed(Line(line), warning)) for line, warning in report.warnings]
     if report.ok and "<include" in text:
         warnings += [
             f"it cannot be stored as a task: {sentence(error.reason)}"
             for error in bt.check(text, templates=None).errors
         ]
-    return CheckedTask(what, report.nodes, report.goals, [sentence(error.reason) for error in report.errors], warnings)
+    return CheckedTask(
+        what, report.nodes, report.goals, [with_command(error.reason) for error in report.errors], warnings
+    )
 
 
 def stored(scheduler: SchedulerClient, task_id: int) -> CheckedTask:
@@ -167,8 +169,8 @@ def template(client: SchedulerClient, what: str) -> CheckedTemplate:
     is_file = path.exists() or path.suffix.lower() == ".xml"
     name, text = (path.stem, read(what)) if is_file else (what, _stored_template(client, what))
     report = client.with_templates(lambda known: bt.check_template(name, text, known, cpp=client.cpp))
-    warnings = [sentence(Placed(Line(line), warning)) for line, warning in report.warnings]
-    return CheckedTemplate(what, report.keys, [sentence(error.reason) for error in report.errors], warnings)
+    warnings = [with_command(Placed(Line(line), warning)) for line, warning in report.warnings]
+    return CheckedTemplate(what, report.keys, [with_command(error.reason) for error in report.errors], warnings)
 
 
 def _stored_template(client: SchedulerClient, name: str) -> str:

@@ -8,7 +8,7 @@ import click
 
 from tms_cli import session
 from tms_cli.reasons import CannotRun
-from tms_cli.words import say, sentence
+from tms_cli.words import say, sentence, with_command
 from tms_reason.errors import DbError
 from tms_reason.reason import Reason
 from tms_reason.texts import text
@@ -104,7 +104,7 @@ def _lines(item: "Item") -> list[str]:
 
     if item.why is not None and item.state in (REFUSED, OTHER):
         word = say("refused") if item.state == REFUSED else say("left out")
-        return [f"{item.place}: {word}: {sentence(item.why)}"]
+        return [f"{item.place}: {word}: {with_command(item.why)}"]
     named = {
         "task": say("task {name}", name=item.name), "template": say("template {name}", name=item.name),
         "record": say("record {name}", name=item.name),

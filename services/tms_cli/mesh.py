@@ -28,7 +28,7 @@ from tms_cli.reasons import (
     SupervisordFailed,
     SupervisordNotUp,
 )
-from tms_cli.words import say, sentence
+from tms_cli.words import say, with_command
 from tms_config.clock import monotonic, sleep
 from tms_config.config import CHOICE, Site
 from tms_config.processes import Process, here
@@ -254,7 +254,7 @@ def wait_ready(site: Site, report: Callable[[str], None]) -> None:
             others = monotonic()
         elif monotonic() - others > ENABLED_LATE:
             for name in waiting:
-                report(say("{name} waits: {why}", name=name, why=sentence(reasons[name])))
+                report(say("{name} waits: {why}", name=name, why=with_command(reasons[name])))
             return
         if waiting and monotonic() > deadline:
             name = min(waiting, key=lambda name: reasons[name].remedy == ENABLE)

@@ -41,6 +41,12 @@ def sentence(found: Reason) -> str:
     return texts.text(found, language())
 
 
+def with_command(found: Reason) -> str:
+    """The text of a reason, with the command that helps, if one does."""
+    remedy = texts.remedy_of(found)
+    return texts.sentence(found, language()) if remedy is not None and remedy[1] else sentence(found)
+
+
 def with_advice(line: str) -> str:
     """Like `reason`, and what to do about it."""
     found = wire.of(line)

@@ -11,7 +11,7 @@ DOMAIN = Remedy("edit_config", "", "Use a number from 0 to 101, or unset the var
 NO_PASSWORD = Remedy("edit_config", "", "Use user and password_file instead, or TMS_MONGODB_URI_FILE")
 SAY_SOURCE = Remedy("edit_config", "", "Say its period, stamps and frozen_after")
 FRAME_PREFIX = Remedy("edit_config", "", "Put the machine's name into the frame_prefix of the model's border")
-SAY_PC = Remedy("say_pc", "", "Say which PC this is: `tms up --role NAME`")
+SAY_PC = Remedy("say_pc", "tms up --role NAME", "Say which PC this is")
 FULL_NAME = Remedy("processes", "tms ps", "Give the full name")
 
 

@@ -6,12 +6,12 @@
 from tms_reason.quantities import Megabytes, Seconds
 from tms_reason.reason import Reason
 from tms_reason.remedies import (
+    ADD_RECORD,
     CANCEL,
     EDIT_CONFIG,
     EDIT_TASK,
     LOGS,
     PROCESSES,
-    RECORDS,
     RETRY,
     RUNS,
     TASKS,
@@ -19,19 +19,29 @@ from tms_reason.remedies import (
     Remedy,
 )
 
+DYNAMIC = Remedy("records", "tms param set {record} --type dynamic", "Make it dynamic, if sensing is to write it")
+ADD_FIELDS = Remedy("records", "tms param set {place} FIELD=VALUE", "Add the fields")
+REPLACE = Remedy("templates", "tms template add --replace FILE", "Choose another name, or replace it")
+WHOLE = Remedy("file", "tms db restore FILE", "Restore the whole database")
+OTHER_ARCHIVE = Remedy("file", "tms db backup", "Give the archive of a backup, or what mongodump wrote")
+OLDER = Remedy("restore", "tms db restore FILE", "Install the newer program, or restore a backup from before")
+START_STORE = Remedy("processes", "tms start tms:store", "Start it, or the MongoDB of the site")
+TERRAINS = Remedy("terrain", "tms terrain list", "See what is stored")
+REMOVE_TERRAIN = Remedy("terrain", "tms terrain rm {name}", "Remove it first")
+ADD_TERRAIN = Remedy("terrain", "tms terrain add FILE", "Store its file")
+GROUNDS = Remedy("ground", "tms ground list", "See what is stored")
 FOLDER = Remedy("file", "", "Give a folder of the C++ system, or what mongodump wrote")
 
 
 # fmt: off
 # records
-class RecordMissing(Reason, text="there is no record {record}: `tms param set` or `tms param load` makes it",
-    action=RECORDS): record: str
+class RecordMissing(Reason, text="there is no record {record}", action=ADD_RECORD): record: str
 class RecordLocked(Reason, text="record {record} is locked by {owner} until the machine has moved with it",
     code="LOCKED_RECORD"): record: str; owner: str
 class StaticInUse(Reason, text="record {record} is static and run {run} uses it: wait until the run has ended",
     code="STATIC_RECORD"): record: str; run: str
 class StaticFromSensing(Reason,
-    text="record {record} is static, so sensing does not write it: `tms param set --type dynamic`"): record: str
+    text="record {record} is static, so sensing does not write it", action=DYNAMIC): record: str
 class AgeUnknown(Reason, text="record {record} may be {limit} old, but its age is not known: let sensing write it"):
     record: str; limit: Seconds
 class FromFuture(Reason,
@@ -74,7 +84,7 @@ class NoValueGiven(Reason, text="{place}: no value, or bytes: use a number, true
     place: str
 class FieldTwice(Reason, text="{place}: field {field} is there twice: send it once"): place: str; field: str
 class SetAndRemoved(Reason, text="{place}: field {field} is to be set and removed: choose one"): place: str; field: str
-class NoneOfFields(Reason, text="{place} has none of the fields {fields}: `tms param set` adds them"):
+class NoneOfFields(Reason, text="{place} has none of the fields {fields}", action=ADD_FIELDS):
     place: str; fields: tuple[str, ...]
 class OtherKind(Reason, text="{place} holds {stored}, not {given}: send the same kind, or change the record"):
     place: str; stored: str; given: str
@@ -127,18 +137,16 @@ class NoSuchFile(Reason, text="no file '{name}' here and no '{name}.xml' in {fol
 # templates
 class TemplateMissing(Reason, text="there is no template '{template}'", action=TEMPLATES): template: str
 class BadTemplateName(Reason, text="template name '{name}' {why}"): name: str; why: Reason
-class TemplateExists(Reason, text="template '{template}' is stored with another text: `tms template add --replace` "
-    "takes this one"): template: str
+class TemplateExists(Reason, text="template '{template}' is stored with another text", action=REPLACE): template: str
 
 # an import of the C++ system's files
 class NoSuchSource(Reason, text="{path}: there is no such folder or file", action=FOLDER): path: str
 class ImportNothing(Reason, text="{path}: there are no trees and records in it", action=FOLDER): path: str
 class NoTreeInFile(Reason, text="no tree: there is no <BehaviorTree> in it"): pass
 class NoRecordsInFile(Reason, text="no records: neither a list of records nor initial_parameters"): pass
-class NoCollectionOfTasks(Reason, text="'{name}' is neither task, subtask nor parameter; `tms db restore` takes whole "
-    "databases"): name: str
+class NoCollectionOfTasks(Reason, text="'{name}' is neither task, subtask nor parameter", action=WHOLE): name: str
 class DocumentNotRead(Reason, text="cannot be read ({problem})"): problem: str
-class DocumentTooLarge(Reason, text="is larger than {limit}: `tms db restore` takes whole databases"): limit: Megabytes
+class DocumentTooLarge(Reason, text="is larger than {limit}", action=WHOLE): limit: Megabytes
 class NoTaskText(Reason, text="the document has no task_sequence"): pass
 class NumberTaken(Reason, text="task {old} becomes task {new}, as there is another task {old}"): old: int; new: int
 class TemplateTwice(Reason, text="there are two templates '{template}' with different texts"): template: str
@@ -150,9 +158,9 @@ class ImportedInPart(Reason, text="{why}; what had been imported could not be ta
     "again"): why: Reason
 
 # terrain
-class TerrainMissing(Reason, text="there is no terrain '{name}': `tms terrain list` shows what is stored"): name: str
+class TerrainMissing(Reason, text="there is no terrain '{name}'", action=TERRAINS): name: str
 class TerrainNotWhole(Reason, text="terrain {name} is not there, or not whole: store it again"): name: str
-class TerrainExists(Reason, text="terrain {type} {name} is there already: remove it first (`tms terrain rm`)"):
+class TerrainExists(Reason, text="terrain {type} {name} is there already", action=REMOVE_TERRAIN):
     type: str; name: str
 class TerrainSizes(Reason,
     text="{file}: a {type} needs its width, height and elevation in metres"):
@@ -188,11 +196,11 @@ class CloudSizes(Reason, text="a cloud of {size} bytes whose sizes say {wanted}:
     size: int; wanted: int
 class CloudForeign(Reason, text="{file}: holds no description of its points, so it is not one of ours"): file: str
 class TerrainOverRos(Reason,
-    text="terrain {name} of type '{type}' came over ROS: store files with `tms terrain add`"): name: str; type: str
+    text="terrain {name} of type '{type}' came over ROS", action=ADD_TERRAIN): name: str; type: str
 class NoImageType(Reason, text="terrain type '{type}': an image is one of {types}"): type: str; types: tuple[str, ...]
 
 # the ground and the work
-class GroundNotThere(Reason, text="there is no ground of '{time}': `tms ground list` shows what is stored"): time: str
+class GroundNotThere(Reason, text="there is no ground of '{time}'", action=GROUNDS): time: str
 class GroundUnreadable(Reason, text="the ground of {time} is damaged: import its file again"): time: str
 class GroundNotHeights(Reason, text="that is no ground: {problem}"): problem: str
 class NoZone(Reason, text="'{time}' is no time with a zone: write 2026-11-26T13:05:00+09:00"):
@@ -203,8 +211,8 @@ class CycleUnreadable(Reason, text="the stored cycle {cycle} cannot be read: {wh
 # the store
 class EmptyFile(Reason, text="is empty", action=EDIT_CONFIG): pass
 class StoreDown(Reason, text="{why}"): why: Reason
-class NoStore(Reason, text="the store does not answer: start it (`tms start tms:store`, or MongoDB of the site); "
-    "the database module reconnects by itself"): pass
+class NoStore(Reason, text="the store does not answer; the database module reconnects by itself",
+    action=START_STORE): pass
 class StoreUnusable(Reason, text="the store cannot be used: {why}"): why: Reason
 class NoVouching(Reason,
     text="store.tls_ca does not vouch for its certificate, or that is for another host name"): pass
@@ -229,8 +237,8 @@ class DocumentUnreadable(Reason,
     problem: str
 class TwoWithOneKey(Reason, text="database {database}, collection {collection}: two documents with the same key {key}: "
     "remove one of them, then start again", code="STORE_CONFLICT"): database: str; collection: str; key: str
-class NewerSchema(Reason, text="{place} has schema {found}, this program ({version}) knows {known}: "
-    "install the newer program, or restore a backup from before (`tms db restore`)", code="STORE_NEWER"):
+class NewerSchema(Reason, text="{place} has schema {found}, this program ({version}) knows {known}",
+    action=OLDER, code="STORE_NEWER"):
     place: str; found: int; version: str; known: int
 class StoreAddress(Reason, text="the store's address {address} is wrong ({problem}): "
     "write mongodb://host:port in TMS_MONGODB_URI or store.uri, with % codes for special characters"):
@@ -258,8 +266,7 @@ class NoFieldIn(Reason, text="{file}: document {number} of {collection} has no {
     "give another archive"): file: str; number: int; collection: str; field: str
 class ArchiveWrong(Reason, text="{file}: {why}"): file: str; why: Reason
 class ArchiveWrongAt(Reason, text="{file}: {why} (byte {byte})"): file: str; why: Reason; byte: int
-class NoArchive(Reason, text="is no archive of mongodump (wrong first bytes): give a file that `tms db backup` "
-    "or `mongodump --archive=FILE` wrote"): pass
+class NoArchive(Reason, text="is no archive of mongodump (wrong first bytes)", action=OTHER_ARCHIVE): pass
 class ArchiveFormat(Reason, text="has archive format '{found}', this program reads {known}"): found: str; known: str
 class ArchiveMisplaced(Reason, text="has documents of {collection} where none may be"): collection: str
 class ArchiveChecksum(Reason, text="is damaged: the checksum of {collection} is another one"): collection: str

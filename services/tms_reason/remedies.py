@@ -5,7 +5,10 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Remedy:
-    """`name` is the name in the console; `command` and `text` are format strings over the reason's arguments."""
+    """`name` is the name in the console; `command` and `text` are format strings over the reason's arguments.
+
+    The command line shows both, the console the text alone: a command in a text would be shown there, too.
+    """
 
     name: str
     command: str  # shell command; empty where only work by hand helps
@@ -24,6 +27,8 @@ STATUS = Remedy("status", "tms status", "See what is wrong with the system")
 TASKS = Remedy("tasks", "tms task list", "See which tasks there are")
 TEMPLATES = Remedy("templates", "tms template list", "See which templates there are")
 RECORDS = Remedy("records", "tms param list", "See which records there are")
+ADD_RECORD = Remedy("records", "tms param set {record} --create FIELD=VALUE", "Add the record")
+CORRECT_RECORD = Remedy("records", "tms param set {record} FIELD=VALUE", "Correct the record")
 RUNS = Remedy("runs", "tms runs", "See which runs there are")
 CHECK = Remedy("check", "tms check", "Check the configuration")
 EDIT_TASK = Remedy("edit_task", "", "Correct the task in the editor and store it again")

@@ -14,6 +14,7 @@ from babel.messages.pofile import read_po
 
 from tms_reason.quantities import Unit
 from tms_reason.reason import REGISTRY, Foreign, Reason
+from tms_reason.remedies import EDIT_TASK
 
 LOCALE = Path(__file__).resolve().parent / "locale"
 LANGUAGES = ("en", "ja")
@@ -56,11 +57,16 @@ def sentence(reason: Reason, language: str) -> str:
 
 
 def remedy_of(reason: Reason) -> tuple[Reason, str] | None:
-    """The reason, among this one and those inside it, that has a remedy, and the command of the remedy."""
+    """The reason, among this one and those inside it, that has a remedy, and the command of the remedy.
+
+    Its own comes first, but for that of every finding in a task: what is wrong there may lie elsewhere, as in a record.
+    """
     remedy = type(reason).remedy
-    if remedy is not None:
-        return reason, _filled(reason, remedy.command, "en")
-    return next((found for one in _inside(reason) if (found := remedy_of(one)) is not None), None)
+    if remedy is None or remedy is EDIT_TASK:
+        inner = next((found for one in _inside(reason) if (found := remedy_of(one)) is not None), None)
+        if inner is not None or remedy is None:
+            return inner
+    return reason, _filled(reason, remedy.command, "en")
 
 
 def translated(english: str, language: str) -> str:

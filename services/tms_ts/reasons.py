@@ -2,7 +2,9 @@
 
 from tms_reason.quantities import Seconds
 from tms_reason.reason import Reason
-from tms_reason.remedies import CANCEL, LOGS, RECORDS, RUNS, STATUS, TASKS
+from tms_reason.remedies import ADD_RECORD, CANCEL, CORRECT_RECORD, LOGS, RUNS, STATUS, TASKS, Remedy
+
+ADD_SHARED = Remedy("records", "tms param set /{record} --create FIELD=VALUE", "Add the record")
 
 
 # fmt: off
@@ -72,11 +74,9 @@ class ServedElsewhere(Reason, text="'{subtask}' of {machine} is served by anothe
     subtask: str; machine: str
 class NotOffered(Reason, text="{machine} offers no '{subtask}' (there: {subtasks})"):
     machine: str; subtask: str; subtasks: tuple[str, ...]
-class NoRecord(Reason, text="no record {record}: `tms param set {record} --create FIELD=VALUE` or the console's page "
-    "Data adds it", action=RECORDS): record: str
-class NoRecordNear(Reason, text="no record {record}; {near}: `tms param set {record} --create FIELD=VALUE` or the "
-    "console's page Data adds it", action=RECORDS): record: str; near: Reason
-class RecordUnfit(Reason, text="record {record} does not fit {subtask}: {why}; correct it with `tms param set`"):
+class NoRecord(Reason, text="no record {record}", action=ADD_RECORD): record: str
+class NoRecordNear(Reason, text="no record {record}; {near}", action=ADD_RECORD): record: str; near: Reason
+class RecordUnfit(Reason, text="record {record} does not fit {subtask}: {why}", action=CORRECT_RECORD):
     record: str; subtask: str; why: Reason
 class MotionRefused(Reason, text="{subtask} with record {record}: the planner would refuse it: {why}"):
     record: str; subtask: str; why: Reason
@@ -93,7 +93,7 @@ class RecordAgeUnknown(Reason,
     record: str; limit: Seconds
 class InputSilent(Reason, text="sensing input {name} should write record {record} and is silent"):
     name: str; record: str
-class NoSharedRecord(Reason, text="no shared record {record}; `tms param set /{record} --create FIELD=VALUE` adds it"):
+class NoSharedRecord(Reason, text="no shared record {record}", action=ADD_SHARED):
     record: str
 class NoSharedField(Reason, text="shared record {record} has no field '{field}'"): record: str; field: str
 class SharedStatic(Reason, text="shared record {record} is static: a run must not write it"): record: str

@@ -2,7 +2,9 @@
 
 from tms_reason.quantities import Seconds
 from tms_reason.reason import Reason
-from tms_reason.remedies import CHECK, EDIT_CONFIG, LOGS, PROCESSES, RETRY, RUNS
+from tms_reason.remedies import CHECK, EDIT_CONFIG, LOGS, PROCESSES, RETRY, RUNS, Remedy
+
+ADD_USER = Remedy("users", "tms user add NAME --role admin", "Add its users")
 
 
 # fmt: off
@@ -17,7 +19,7 @@ class NoUsers(Reason, text="this site has no users: no login is needed"): pass
 class Role(Reason, text="this needs the role {role}, {person} is {has}"): role: str; person: str; has: str
 class NoAccessControl(Reason, text="others can connect to {bind}, and the console has no users: commands are refused",
     action=EDIT_CONFIG,
-    details="console.users names a file of users (`tms user add`); `bind: 127.0.0.1` keeps others out"):
+    details="console.users names a file of users; `bind: 127.0.0.1` keeps others out"):
     bind: str
 
 # the form of a request
@@ -73,8 +75,8 @@ class UnreadableCertificate(Reason, text="{file}: console.tls.{name}: {path}: ca
     action=EDIT_CONFIG): file: str; name: str; path: str; problem: str
 class NoCertificate(Reason, text="{file}: console.tls: {certificate} and {key} are no PEM certificate, key ({problem})",
     action=EDIT_CONFIG): file: str; certificate: str; key: str; problem: str
-class NoUsersFile(Reason, text="{file}: the users file of console.users is not there: `tms user add NAME --role admin`",
-    action=CHECK): file: str
+class NoUsersFile(Reason, text="{file}: the users file of console.users is not there",
+    action=ADD_USER): file: str
 class UnreadableUsers(Reason, text="{file}: the users file of console.users cannot be read ({problem})",
     action=CHECK): file: str; problem: str
 class UsersForAll(Reason, text="{file}: all users of this PC may read it: `chmod 600 {file}`", action=CHECK): file: str

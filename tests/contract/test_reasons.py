@@ -50,6 +50,16 @@ def test_its_texts(kind: type[Reason]) -> None:
     assert used == arguments(kind), f"{kind.code}: declared {sorted(arguments(kind))}, used {sorted(used)}"
 
 
+@pytest.mark.parametrize("kind", declared(), ids=lambda kind: kind.code)
+def test_its_texts_name_no_command(kind: type[Reason]) -> None:
+    """Whoever has the console alone has no terminal; the command of a remedy is shown by `tms` only."""
+    if kind.__module__ == "tms_cli.reasons":
+        return  # shown by `tms` only
+    for template in templates(kind):
+        for language in texts.LANGUAGES:
+            assert "`tms " not in texts.translated(template, language), f"{kind.code}: {template!r}"
+
+
 def test_no_code_is_unused_and_no_text_is_left_behind() -> None:
     sources = {
         path: path.read_text(encoding="utf-8")

@@ -224,7 +224,7 @@ def test_what_is_there_with_another_content_is_replaced_only_on_demand(db: store
     folder = put("initial_values.yaml", INITIAL)
     plan = planned(db, folder)
     assert [words(item.why) for item in plan.items] == [
-        "template 'Dig' is stored with another text: `tms template add --replace` takes this one",
+        "template 'Dig' is stored with another text",
         "record /FLAGS is there with other values: --replace takes these",
     ]
     plan = planned(db, folder, replace=True)

@@ -43,5 +43,5 @@ def command(ctx: click.Context, as_json: bool) -> None:
         )
     else:
         for name, reason in reasons.items():
-            click.echo(f"{name:42} {say('ready') if reason is None else words.sentence(reason)}")
+            click.echo(f"{name:42} {say('ready') if reason is None else words.with_command(reason)}")
     ctx.exit(1 if bad else 0)

@@ -107,7 +107,7 @@ def test_the_users_file_is_beside_the_site_file(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "mode", "reported"),
     [
-        (None, 0, r"is not there: `tms user add NAME --role admin`"),
+        (None, 0, r"is not there; Add its users: `tms user add NAME --role admin`"),
         ("users: {}\n", 0o644, r"all users of this PC may read it: `chmod 600 "),
         ("users: {ken: {role: boss}}\n", 0o600, r"users\.yaml:1: users\.ken\.role: "),
         (
