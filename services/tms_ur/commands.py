@@ -151,6 +151,11 @@ def _machines(app: FastAPI, client: "SiteClient", note: _Note, site: Site) -> No
         client.let_back(name, note(request, person, "escape_asked", _known(name, names)))
         return Nothing()
 
+    @app.post("/api/machines/{name}/give-back", summary="End driving by hand; answers when the machine stands",
+              responses=ANSWERS)  # fmt: skip
+    def give_back(request: Request, name: MachineName, _: Nothing, person: Operator) -> Receipt:
+        return client.give_back(name, note(request, person, "give_back", _known(name, names)))
+
 
 def _known(machine: str, names: list[str]) -> str:
     if machine not in names:

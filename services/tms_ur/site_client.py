@@ -23,7 +23,7 @@ from tms_msg_ground.msg import SoilLoad
 from tms_msg_host.msg import Processes
 from tms_msg_host.srv import ControlProcess, ReadLog
 from tms_msg_rc.msg import MachineState, StopReceipt
-from tms_msg_rc.srv import Rearm, StopMachine
+from tms_msg_rc.srv import StopMachine
 from tms_msg_rp.srv import GetScene
 from tms_msg_sp.msg import InputState, InputStates
 from tms_msg_ts.msg import RunStates
@@ -32,28 +32,27 @@ from tms_msg_ts.srv import CheckTask
 from tms_config.clock import monotonic
 from tms_config.config import Site
 from tms_config.processes import table
-from tms_decision.gateway.stops import RECEIPT_LIMIT
 from tms_machine.places import PERIOD, Places
 from tms_machine.values import to_parameters
 from tms_reason import wire
-from tms_reason.errors import RosError, TmsError
+from tms_reason.errors import TmsError
 from tms_reason.reason import Reason
 from tms_ros.node import Ros
-from tms_ur import gateway_areas, messages
+from tms_ur import messages
 from tms_ur.answers import checked
 from tms_ur.area_client import check_areas, enable_areas
 from tms_ur.board import Board
 from tms_ur.data_models import Change, Record, Sensing
 from tms_ur.ground_client import ground, ground_at
 from tms_ur.ground_models import Ground
-from tms_ur.models import AddedTemplate, Event, Host, Place, Rearmed, Receipt, Run, Task, TaskText, Template
+from tms_ur.machine_calls import MachineCalls
+from tms_ur.models import AddedTemplate, Event, Host, Place, Run, Task, TaskText, Template
 from tms_ur.place_client import PlaceClient
 from tms_ur.planned_paths import PlannedPaths
-from tms_ur.reason_view import of_error, of_line, view
 from tms_ur.reasons import UnknownProcess
 from tms_ur.recording_client import Asked, recording
 from tms_ur.recording_models import Recording
-from tms_ur.run_calls import CALL_LIMIT, RunCalls
+from tms_ur.run_calls import CALL_LIMIT
 from tms_ur.scene_models import Scene, scene
 from tms_ur.watch_models import AreasChecked
 from tms_ur.watching import Watching
@@ -67,7 +66,7 @@ if TYPE_CHECKING:
 PROCESS_LIMIT = 15.0  # s for a process to end and to be started
 
 
-class SiteClient(RunCalls):
+class SiteClient(MachineCalls):
     """The site as the API sees it."""
 
     def __init__(self, ros: Ros, site: Site) -> None:
@@ -213,31 +212,6 @@ class SiteClient(RunCalls):
         return list(map(wire.known, answer.errors)), list(map(wire.known, answer.warnings))
 
     # machines
-
-    def stop(self, machine: str, cause: Reason) -> Receipt:
-        """Stop one machine by a call of its gateway; where no answer comes, the receipt says that."""
-        try:
-            request = StopMachine.Request(cause=wire.to_line(cause))
-            answer = self._ros.call(StopMachine, f"/{machine}/rc/stop", request, RECEIPT_LIMIT)
-        except RosError as error:
-            return Receipt(
-                machine=machine, confirmed=False, seconds=0.0, travel_joint="", travel_rad=0.0, travel_m=0.0,
-                cause=view(cause), detail=of_error(error), evidence=None, latched=False,
-            )  # fmt: skip
-        return messages.receipt(answer.receipt)
-
-    def rearm(self, machine: str, token: str) -> Rearmed:
-        """One step of re-arming.
-
-        Raises:
-            TmsError: refused, with the reason.
-        """
-        answer = self._ask(Rearm, f"/{machine}/rearm", token=token)
-        return Rearmed(token=answer.token, cause=of_line(answer.cause), armed=answer.armed)
-
-    def let_back(self, machine: str, who: str) -> None:
-        """Let a machine that stands outside its areas be moved back in; a TmsError says why not."""
-        gateway_areas.let_back(self._ros, machine, who)
 
     def check_areas(self, areas: dict[str, Any]) -> AreasChecked:
         """What would change if these areas were enabled; a TmsError says what is wrong with them."""

@@ -17,7 +17,7 @@ from tms_config.models import MachineModel
 from tms_config.site_file import Console, SiteFile
 from tms_config.yaml_file import parse
 from tms_db.reasons import GroundNotThere
-from tms_decision.reasons import SoftwareStop
+from tms_decision.reasons import GivenBack, SoftwareStop
 from tms_reason.errors import TmsError
 from tms_reason.reason import Foreign, Reason
 from tms_reason.remedies import EDIT_TASK
@@ -234,6 +234,13 @@ class FakeSiteClient:
         return Receipt(
             machine=machine, confirmed=True, seconds=0.4, travel_joint="swing_joint", travel_rad=0.01, travel_m=0.0,
             cause=view(cause), detail=None, evidence=None, latched=True,
+        )  # fmt: skip
+
+    def give_back(self, machine: str, who: str) -> Receipt:
+        self._called("give_back", machine, who)
+        return Receipt(
+            machine=machine, confirmed=True, seconds=0.4, travel_joint="", travel_rad=0.0, travel_m=0.0,
+            cause=view(GivenBack(who)), detail=None, evidence=None, latched=False,
         )  # fmt: skip
 
     def rearm(self, machine: str, token: str) -> Rearmed:

@@ -47,7 +47,7 @@ COMMANDS = [
     ("/api/machines/zx200/rearm", {}), ("/api/tasks", {"xml": XML}), ("/api/tasks/4/remove", {}),
     ("/api/tasks/check", {"xml": XML}), ("/api/tasks/4/diff", {"xml": XML}), ("/api/parameters", RECORD),
     ("/api/processes/zx200:rc/restart", {}), ("/api/templates", {"name": "Dig", "xml": XML}),
-    ("/api/machines/zx200/escape", {}), ("/api/places/road/revoke", {}),
+    ("/api/machines/zx200/escape", {}), ("/api/places/road/revoke", {}), ("/api/machines/zx200/give-back", {}),
 ]  # fmt: skip
 
 
@@ -172,6 +172,15 @@ def test_who_lets_a_machine_back_is_told_its_gateway(client: Client, site_client
     assert client.post("/api/machines/zx200/escape", json={}).is_success
     assert site_client.calls == [("let_back", "zx200", "local at 127.0.0.1")]
     assert client.post("/api/machines/ic120/escape", json={}).status_code == 404
+
+
+def test_a_machine_is_given_back_by_name_with_the_receipt_of_its_stop(
+    client: Client, site_client: FakeSiteClient
+) -> None:
+    answer = client.post("/api/machines/zx200/give-back", json={})
+    assert (answer.status_code, answer.json()["confirmed"]) == (200, True)
+    assert site_client.calls == [("give_back", "zx200", "local at 127.0.0.1")]
+    assert client.post("/api/machines/ic120/give-back", json={}).status_code == 404
 
 
 def test_answer_a_question(client: Client, site_client: FakeSiteClient) -> None:
@@ -406,7 +415,7 @@ def test_every_command_is_audited(site_client: FakeSiteClient) -> None:
         assert client.post(path, json=body).is_success, path
     assert {what for _, _, what, _ in audit.notes} == {
         "start_run", "cancel_run", "answer", "rearm_asked", "escape_asked", "add_task", "remove_task", "set_parameter",
-        "restart", "stop", "add_template", "revoke_place_asked", "resume_run", "abandon_run",
+        "restart", "stop", "add_template", "revoke_place_asked", "resume_run", "abandon_run", "give_back",
     }  # fmt: skip
     assert {(who, where) for who, where, _, _ in audit.notes} == {("local", "127.0.0.1")}
 
@@ -774,6 +783,7 @@ def test_every_endpoint_is_in_the_document(client: Client) -> None:
         "/api/tasks/{task_id}/machines", "/api/runs/{run_id}/blackboard",
         "/api/parameters/history", "/api/sensing", "/api/site", "/api/session", "/api/login", "/api/logout",
         "/api/stop", "/api/machines/{name}/rearm", "/api/machines/{name}/escape",
+        "/api/machines/{name}/give-back",
         "/api/questions/{question_id}", "/api/tasks/check",
         "/api/tasks/{task_id}/diff", "/api/tasks/{task_id}/remove", "/api/runs/{run_id}/tree",
         "/api/runs/{run_id}/export", "/api/audit", "/api/machines/{name}/scene",
