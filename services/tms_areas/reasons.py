@@ -5,7 +5,7 @@ from tms_reason.reason import Reason
 from tms_reason.remedies import EDIT_CONFIG, ESCAPE, INSPECT, RESTART, Remedy
 
 DRAW_AGAIN = Remedy("draw", "", "Draw the area again, and export the file anew")
-CHECK_AGAIN = Remedy("check", "", "Check the areas again")
+CHECK_AGAIN = Remedy("check_areas", "", "Check the areas again")
 LOOK_AROUND = Remedy("look", "", "Look who is in the area, and re-arm once it is free")
 SEE_TRACKER = Remedy("look", "", "Look at the tracker and at its PC")
 DRIVE_OUT = Remedy("take", "tms take {machine}", "Drive the machine by hand to where it may be")

@@ -9,11 +9,20 @@ export const COMMANDS = {
   escape: ({ machine }) => letBack(machine),
   cancel: ({ run }) => cancelRun(run),
   restart: ({ process }) => restartProcess(process),
+  give_back: ({ machine }) => giveBack(machine),
 };
 
-/** Pages by action, where a person sees or corrects the cause. */
-export const LINKS = { processes: "system", restart: "system", logs: "system", status: "system", tasks: "tasks", edit_task: "tasks",
-  records: "data", runs: "history" };
+const page = (name) => () => name;
+const processPage = ({ process }) => (process ? `system/${encodeURIComponent(process)}` : "system"); // with its log
+
+/** Pages by action, from its arguments, where a person sees or corrects the cause. */
+export const LINKS = {
+  processes: processPage, restart: processPage, logs: processPage, status: page("system"),
+  tasks: page("tasks"), templates: page("tasks"), edit_task: page("tasks"),
+  records: page("data"), goal: page("data"), move: page("data"),
+  enable_areas: page("map"), draw: page("map"), check_areas: page("map"),
+  places: page("board"), revoke: page("board"), resume: page("board"), runs: page("history"),
+};
 
 export async function rearmMachine(name) {
   const path = `/api/machines/${encodeURIComponent(name)}/rearm`;
@@ -42,6 +51,19 @@ export async function letBack(name) {
   }
   await ask(`${path}/escape`, {});
   return t("escapes", { name });
+}
+
+/** Ends driving by hand; the text tells whether the machine was seen to stand. */
+export async function giveBack(name) {
+  if (!(await confirmed(t("give_back_ask", { name })))) {
+    return "";
+  }
+  const receipt = await ask(`/api/machines/${encodeURIComponent(name)}/give-back`, {});
+  const seen = t(receipt.confirmed ? "stood" : "not_stood", { ...receipt, detail: said(receipt.detail) });
+  if (!receipt.confirmed) {
+    throw new Error(seen);
+  }
+  return `${t("given_back", { name })} ${seen}`;
 }
 
 export async function cancelRun(id) {

@@ -1,5 +1,6 @@
-// The panel of one task: a green start, a red software stop, and the questions of the run.
-import { at, keep, relabelAll, setText } from "./dom.js";
+// The panel of one task: a green start that asks once, a red software stop, and the questions of the run.
+import { askInDialog, prepareDialog } from "./confirm.js";
+import { at, keep, make, relabelAll, setText } from "./dom.js";
 import { buildQuestion, fillQuestion } from "./questions.js";
 import { ask, watch } from "./server.js";
 import { fillReason, once, sayError } from "./reasons.js";
@@ -31,6 +32,15 @@ function name() {
   setText(at("task"), id ? `${t("task")} ${id} ${task?.description ?? ""}` : t("panel_none"));
 }
 
+/** The task and the machines that will move. */
+function whatStarts(machines) {
+  const named = `${id} ${task?.description ?? ""}`.trim();
+  return [
+    make("p", {}, t(machines.length > 0 ? "start_ask" : "start_ask_none", { task: named })),
+    make("ul", { id: "will_move", className: "plain" }, ...machines.map((one) => make("li", {}, make("strong", {}, one)))),
+  ];
+}
+
 async function load() {
   try {
     task = await ask(`/api/tasks/${id}`);
@@ -41,6 +51,10 @@ async function load() {
 }
 
 at("start").addEventListener("click", (event) => once(event.currentTarget, async () => {
+  const { machines } = await ask(`/api/tasks/${id}/machines`);
+  if (!(await askInDialog(...whatStarts(machines)))) {
+    return "";
+  }
   const answer = await ask("/api/runs", { task_id: id });
   return t("started", { id: answer.run_id });
 }));
@@ -54,6 +68,7 @@ onLanguage(() => {
   }
 });
 translatePage();
+prepareDialog();
 name();
 
 ask("/api/session").then((session) => {
@@ -61,6 +76,7 @@ ask("/api/session").then((session) => {
     location.href = `/?panel=${id}`; // log in there first
     return;
   }
+  document.body.dataset.role = session.role ?? "";
   reportOpen(session);
   load();
   watch(heard, (there) => {

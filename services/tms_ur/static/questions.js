@@ -9,8 +9,9 @@ export function buildQuestion(asked) {
     await ask(`/api/questions/${encodeURIComponent(asked.id)}`, { yes });
     return t("answered");
   });
-  return make("section", { className: "question" }, ...parts("strong", ["title"]), ...parts("p", ["text"]), ...parts("span", ["left"]),
-    button("yes", "go", reply(true)), button("no", "", reply(false)));
+  const answers = [button("yes", "go", reply(true)), button("no", "", reply(false))];
+  answers.forEach((one) => { one.dataset.command = ""; }); // not for those who may only look
+  return make("section", { className: "question" }, ...parts("strong", ["title"]), ...parts("p", ["text"]), ...parts("span", ["left"]), ...answers);
 }
 
 export function fillQuestion(box, asked) {

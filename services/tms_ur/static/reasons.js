@@ -1,4 +1,4 @@
-// Reasons on the page: the text, the remedy as a button, a link or a command, and details on request.
+// Reasons on the page: the text, the remedy as a button, a link or words, and details on request.
 import { COMMANDS, LINKS } from "./actions.js";
 import { at, make, say, setText } from "./dom.js";
 import { said, sayAgain, t } from "./strings.js";
@@ -27,13 +27,12 @@ function help(action) {
   }
   if (action.name in COMMANDS && Object.keys(action.args).length > 0) {
     const act = (event) => once(event.currentTarget, () => COMMANDS[action.name](action.args));
-    return [" ", make("button", { type: "button", className: "go", onclick: act, data: texts(action.text) })];
+    return [" ", make("button", { type: "button", className: "go", onclick: act, data: { ...texts(action.text), command: "" } })];
   }
   if (action.name in LINKS) {
-    return [" ", make("a", { className: "button", href: `/#${LINKS[action.name]}`, data: texts(action.text) })];
+    return [" ", make("a", { className: "button", href: `/#${LINKS[action.name](action.args)}`, data: texts(action.text) })];
   }
-  const command = action.command === "" ? [] : [": ", make("code", {}, action.command)];
-  return [" ", make("span", { data: texts(action.text) }), ...command];
+  return [" ", make("span", { data: texts(action.text) })];
 }
 
 function details(reason) {

@@ -8,7 +8,8 @@ import pytest
 
 import console_types
 from conftest import PROJECT
-from tms_reason import remedies
+from tms_reason import wire
+from tms_reason.reason import REGISTRY, Reason
 from tms_reason.texts import translated
 from tms_ts.run_states import STATES
 from tms_ur.api import BUILT, STATIC
@@ -60,12 +61,47 @@ def test_every_text_that_the_pages_ask_for_is_there() -> None:
     assert used() <= table()["en"].keys()
 
 
-def test_actions_of_the_console_are_those_of_reasons() -> None:
+# What people do with their hands: at a machine, at a PC and its files, with a clock, or once more with the same button.
+BY_HAND = {"look", "release_stop", "take", "set_clock", "retry", "retype"}
+AT_THE_PC = {
+    "edit_config", "check", "say_pc", "setup", "up", "users", "file", "restore", "terrain", "ground",
+}  # fmt: skip
+COMMAND_LINE = {"tms_cli", "tms_ground"}  # packages whose reasons only those hear who have typed a command
+
+
+def actions(name: str) -> set[str]:
     text = CODE[STATIC / "actions.js"]
-    tables = re.findall(r"export const (?:COMMANDS|LINKS) = \{(.*?)\};", text, re.DOTALL)
-    names = set(re.findall(r"\b(\w+): [(\"]", "".join(tables)))
-    known = {one.name for one in vars(remedies).values() if isinstance(one, remedies.Remedy)}
-    assert {"rearm", "cancel", "restart", "logs"} <= names <= known
+    found = re.search(rf"export const {name} = \{{(.*?)\n\}};", text, re.DOTALL)
+    assert found
+    return set(re.findall(r"\b(\w+): ", found[1]))
+
+
+def helped() -> list[type[Reason]]:
+    """Reasons that a person at the console can meet, with what helps."""
+    wire.load()
+    ours = [one for one in REGISTRY.values() if one.__module__.startswith("tms_") and one.remedy is not None]
+    return [one for one in ours if one.__module__.partition(".")[0] not in COMMAND_LINE]
+
+
+def test_every_action_of_a_reason_is_a_button_a_link_or_work_by_hand() -> None:
+    names = {one.remedy.name for one in helped() if one.remedy}
+    known = actions("COMMANDS") | actions("LINKS")
+    assert names - known - BY_HAND - AT_THE_PC == set()
+    assert known <= names, "the console knows an action that no reason has"
+    assert BY_HAND | AT_THE_PC <= names and not known & (BY_HAND | AT_THE_PC)
+
+
+def test_a_reason_has_what_its_button_needs() -> None:
+    needs = {"restart": "process", "cancel": "run", "resume": "run"}
+    for kind in helped():
+        name = kind.remedy.name if kind.remedy else ""
+        if name in actions("COMMANDS") | {"resume"}:
+            assert needs.get(name, "machine") in kind.parameters, kind.code
+
+
+def test_pages_show_no_command_of_a_terminal() -> None:
+    for file, text in {**CODE, **REACT}.items():
+        assert "action.command" not in text, file
 
 
 def test_a_run_has_the_states_and_words_of_the_command_line() -> None:

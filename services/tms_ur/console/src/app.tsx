@@ -23,10 +23,10 @@ function useSession(): Session | "lost" | null {
     const enter = async () => {
       try {
         const found = await get("/api/session");
+        document.body.dataset.role = found.role ?? ""; // before anything is drawn for this person
         setSession(found);
         reportOpen(found);
         if (found.name !== null) {
-          document.body.dataset.role = found.role ?? "";
           connect();
           tellEnds();
         }

@@ -1,8 +1,9 @@
-// A button that gives a command once: it is disabled until the answer comes.
+// A button that gives a command once: it is disabled until the answer comes, and only shown to whom the server obeys.
 
 import { say } from "old/dom.js";
 import { sayError } from "old/reasons.js";
 import { type ReactNode, useRef, useState } from "react";
+import { may, type Role } from "./role";
 
 interface Props {
   work: () => Promise<string>; // resolves to the text to show
@@ -11,9 +12,10 @@ interface Props {
   label?: string; // spoken name, where it tells more than the text
   id?: string;
   disabled?: boolean;
+  needs?: Role; // that the server asks for
 }
 
-export function Command({ work, children, className, label, id, disabled = false }: Props) {
+export function Command({ work, children, className, label, id, disabled = false, needs = "operator" }: Props) {
   const [busy, setBusy] = useState(false);
   const element = useRef<HTMLButtonElement>(null);
   const give = async () => {
@@ -33,6 +35,9 @@ export function Command({ work, children, className, label, id, disabled = false
       }
     }
   };
+  if (!may(needs)) {
+    return null;
+  }
   return (
     <button
       type="button"

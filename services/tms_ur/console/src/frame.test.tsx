@@ -13,6 +13,7 @@ configure({ asyncUtilTimeout: 60_000 }); // ms; a busy machine is no failure
 beforeEach(async () => {
   await texts.changeLanguage("en");
   document.body.innerHTML = '<p id="message"></p>';
+  document.body.dataset.role = "operator";
 });
 afterEach(() => vi.restoreAllMocks());
 
@@ -30,6 +31,38 @@ test("a reason is said in the language of the page, with what helps", async () =
   expect(screen.getByRole("link", { name: "Correct it" }).getAttribute("href")).toBe("#data");
   await texts.changeLanguage("ja");
   expect(await screen.findByRole("link", { name: "直す" })).toBeTruthy();
+});
+
+const helpedBy = (name: string, args: Record<string, unknown>): ReasonView => ({
+  ...REASON,
+  action: { name, command: "tms it", args, text: { en: "Help", ja: "助ける" } },
+});
+
+test("what helps is a button, the page of the very process, or words, and never a command of a terminal", () => {
+  const { rerender, container } = render(<Said reason={helpedBy("give_back", { machine: "zx200" })} />);
+  expect(screen.getByRole("button", { name: "Help" })).toBeTruthy();
+  rerender(<Said reason={helpedBy("logs", { process: "zx200:rc" })} />);
+  expect(screen.getByRole("link", { name: "Help" }).getAttribute("href")).toBe("#system/zx200%3Arc");
+  rerender(<Said reason={helpedBy("processes", {})} />);
+  expect(screen.getByRole("link", { name: "Help" }).getAttribute("href")).toBe("#system");
+  rerender(<Said reason={helpedBy("look", {})} />);
+  expect(container.textContent).toContain("Help");
+  expect(container.textContent).not.toContain("tms it");
+});
+
+test("who may only look has no button that the server would refuse", () => {
+  document.body.dataset.role = "viewer";
+  const { rerender } = render(<Said reason={helpedBy("rearm", { machine: "zx200" })} />);
+  expect(screen.getByText("Help")).toBeTruthy();
+  expect(screen.queryByRole("button")).toBeNull();
+  rerender(<Command work={async () => ""}>Go</Command>);
+  expect(screen.queryByRole("button")).toBeNull();
+  rerender(
+    <Command needs="viewer" work={async () => ""}>
+      Go
+    </Command>,
+  );
+  expect(screen.getByRole("button", { name: "Go" })).toBeTruthy();
 });
 
 test("a command is given once, until its answer comes", async () => {

@@ -7,7 +7,7 @@ import { useEffect, useState } from "react";
 import { useTranslation } from "react-i18next";
 import type { Session } from "./models";
 import { get, post } from "./server";
-import { timeOfDay } from "./texts";
+import { texts, timeOfDay } from "./texts";
 
 const TICK = 1000; // ms
 
@@ -19,7 +19,7 @@ export function Header({ session, inside }: { session: Session | null; inside: b
         {t("title")} <small>ROS2-TMS</small>
       </h1>
       {inside && <Where />}
-      <span id="who">{inside && session?.login ? `${session.name} (${t(session.role ?? "")})` : ""}</span>
+      <span id="who">{inside && session ? whoIs(session) : ""}</span>
       <button type="button" id="logout" hidden={!inside || !session?.login} onClick={leave}>
         {t("logout")}
       </button>
@@ -50,6 +50,14 @@ function Where() {
       <strong>{site}</strong> <time>{timeOfDay(new Date(now).toISOString(), now)}</time>
     </span>
   );
+}
+
+/** Without users, whoever is at this PC may do all; others may look where they can connect at all. */
+function whoIs({ login, name, role }: Session): string {
+  if (login) {
+    return `${name} (${texts.t(role ?? "")})`;
+  }
+  return texts.t(role === "admin" ? "no_login" : "no_login_view");
 }
 
 async function leave() {

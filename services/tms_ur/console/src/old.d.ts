@@ -39,7 +39,8 @@ declare module "old/stop.js" {
 
 declare module "old/actions.js" {
   export const COMMANDS: Record<string, (args: Record<string, unknown>) => Promise<string>>;
-  export const LINKS: Record<string, string>;
+  export const LINKS: Record<string, (args: Record<string, unknown>) => string>;
+  export function giveBack(name: string): Promise<string>;
   export function rearmMachine(name: string): Promise<string>;
   export function cancelRun(id: string): Promise<string>;
   export function restartProcess(name: string, running: number): Promise<string>;

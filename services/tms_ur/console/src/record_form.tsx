@@ -43,7 +43,7 @@ export function RecordForm({ id, title, jump = false, save, onSaved, onClose, ch
       <Problem id={`${id}_problem`} error={error} />
       <div className="bar">
         {save && (
-          <Command className="go" work={work(save)}>
+          <Command className="go" needs="admin" work={work(save)}>
             {t("save")}
           </Command>
         )}

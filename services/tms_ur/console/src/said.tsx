@@ -1,9 +1,10 @@
-// A reason on the page: its text, what helps as a button or a link, and details on request.
+// A reason on the page: its text, what helps as a button, a link or words, and details on request.
 
 import { COMMANDS, LINKS } from "old/actions.js";
 import { useTranslation } from "react-i18next";
 import { Command } from "./command";
 import type { ReasonView } from "./models";
+import { may } from "./role";
 import type { Language } from "./texts";
 
 interface Props {
@@ -36,24 +37,20 @@ export function Said({ reason, text, done }: Props) {
 function Help({ action, language }: { action: NonNullable<ReasonView["action"]>; language: Language }) {
   const text = action.text[language];
   const command = COMMANDS[action.name];
-  if (command !== undefined && Object.keys(action.args).length > 0) {
+  const link = LINKS[action.name];
+  if (command !== undefined && Object.keys(action.args).length > 0 && may("operator")) {
     return (
       <Command className="go" work={() => command(action.args)}>
         {text}
       </Command>
     );
   }
-  if (action.name in LINKS) {
+  if (link !== undefined) {
     return (
-      <a className="button" href={`#${LINKS[action.name]}`}>
+      <a className="button" href={`#${link(action.args)}`}>
         {text}
       </a>
     );
   }
-  return (
-    <>
-      <span>{text}</span>
-      {action.command && <code>{action.command}</code>}
-    </>
-  );
+  return <span>{text}</span>; // what people do with their hands, or another person may do
 }

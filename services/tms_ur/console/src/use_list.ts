@@ -1,6 +1,8 @@
-// A list of the server's: read at the start, and again when a run begins or ends, or the connection comes back.
+// A list of the server's: read at the start, and again when a run begins or ends, the connection comes back, or it failed.
 import { useCallback, useEffect, useState } from "react";
 import { listsChanged, subscribe } from "./live";
+
+const RETRY = 5000; // ms until what could not be read is tried again
 
 interface Found<T> {
   list: T | null; // null: not read yet
@@ -21,6 +23,12 @@ export function useList<T>(read: () => Promise<T>): Found<T> {
       (why: Error) => setError(why),
     );
   }, [read]);
+  useEffect(() => {
+    if (error !== null) {
+      const timer = setTimeout(again, RETRY); // the module that was away may be back
+      return () => clearTimeout(timer);
+    }
+  }, [error, again]);
   useEffect(() => {
     again();
     return subscribe((now, before) => {

@@ -3,6 +3,7 @@ import "./board.css";
 import { useTranslation } from "react-i18next";
 import { useLive } from "../live";
 import type { ActiveRun, State } from "../models";
+import { Problem } from "../problem";
 import { get } from "../server";
 import { useList } from "../use_list";
 import { ActiveRuns } from "./active_runs";
@@ -19,6 +20,7 @@ const readInterrupted = async () =>
   (await get("/api/runs", {}, `limit=${LATEST}`)).filter((run) => run.state === "interrupted");
 
 export function Board() {
+  const { t } = useTranslation();
   const { state, link } = useLive();
   const interrupted = useList(readInterrupted);
   if (state === null) {
@@ -26,10 +28,12 @@ export function Board() {
   }
   const alarms = alarmsOf(state);
   const runs = interrupted.list ?? [];
+  const open = runs.length + (interrupted.error === null ? 0 : 1); // what is not known needs a look, too
   return (
     <div className="board">
-      <SiteLight state={state} link={link} needed={alarms.length + runs.length + state.shared.alarms.length} />
+      <SiteLight state={state} link={link} needed={alarms.length + open + state.shared.alarms.length} />
       <AlarmList alarms={alarms} />
+      <Problem id="interrupted_problem" what={t("interrupted_unknown")} error={interrupted.error} />
       <Interrupted runs={runs} changed={interrupted.again} />
       <div className="halves">
         <div>

@@ -1,6 +1,6 @@
 // One machine: what it does, for whom it waits and since when, whether it may move, and what one can do about it.
 
-import { rearmMachine } from "old/actions.js";
+import { giveBack, rearmMachine } from "old/actions.js";
 import { duration } from "old/dom.js";
 import { siteNow, treeOf } from "old/server.js";
 import { stop } from "old/stop.js";
@@ -44,6 +44,11 @@ export function MachineCard({ machine, run }: Props) {
             {t("rearm")}
           </Command>
         )}
+        {machine.by_hand && (
+          <Command className="go" label={t("give_back_machine", { name })} work={() => giveBack(name)}>
+            {t("give_back")}
+          </Command>
+        )}
         <button type="button" className="stop" aria-label={t("stop_machine", { name })} onClick={() => stop(name)}>
           {t("stop_one")}
         </button>
@@ -56,7 +61,9 @@ export function MachineCard({ machine, run }: Props) {
 /** Why it may not move, is not ready, or waits; each with what helps. */
 function Why({ machine, run }: Props) {
   const { t } = useTranslation();
-  const since = machine.since ? ` (${t("since", { time: timeOfDay(machine.since, siteNow()) })})` : "";
+  const from = (moment: string | null | undefined) =>
+    moment ? ` (${t("since", { time: timeOfDay(moment, siteNow()) })})` : "";
+  const since = from(machine.since);
   const latch = machine.latch && t("why_latched", { cause: said(machine.latch) }) + since;
   const waits = run?.reason && machine.state !== "moving" && !machine.latch;
   return (
@@ -84,7 +91,7 @@ function Why({ machine, run }: Props) {
       )}
       {waits && (
         <p>
-          <Said reason={run.reason} text={t("waits", { reason: said(run.reason) }) + since} />
+          <Said reason={run.reason} text={t("waits", { reason: said(run.reason) }) + from(run.reason_since)} />
         </p>
       )}
     </>

@@ -41,7 +41,7 @@ export function Tasks() {
               <Command className="go" label={t("run_task", { id: task.id })} work={() => startTask(task)}>
                 {t("run")}
               </Command>
-              <Command label={t("check_task", { id: task.id })} work={() => check(task.id)}>
+              <Command needs="viewer" label={t("check_task", { id: task.id })} work={() => check(task.id)}>
                 {t("check")}
               </Command>
             </span>

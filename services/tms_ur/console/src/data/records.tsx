@@ -4,6 +4,7 @@ import { useTranslation } from "react-i18next";
 import { Age } from "../age";
 import { Command } from "../command";
 import type { Stored } from "../models";
+import { may } from "../role";
 import { Table } from "../table";
 import { listed, nameOf } from "./values";
 
@@ -24,9 +25,11 @@ export function Records({ records, onEdit, onNew, onPast }: Props) {
         {t("filter")}
         <input id="record_filter" type="search" value={filter} onChange={(event) => setFilter(event.target.value)} />
       </label>
-      <button type="button" onClick={onNew}>
-        {t("new_record")}
-      </button>
+      {may("admin") && (
+        <button type="button" onClick={onNew}>
+          {t("new_record")}
+        </button>
+      )}
       {found?.length === 0 && <p id="none_records">{t("none_records")}</p>}
       <Table id="list_records" label="p_data" heads={["record", "type", "age", "source", "values", "commands"]}>
         {found?.map((record) => (
@@ -52,12 +55,12 @@ function Row({ record, onEdit, onPast }: RowProps) {
       <td>{record.source}</td>
       <td className="values">{listed(record.values, record)}</td>
       <td className="bar">
-        {record.type === "static" && (
+        {record.type === "static" && may("admin") && (
           <button type="button" aria-label={t("edit_record", { name })} onClick={() => onEdit(record)}>
             {t("edit")}
           </button>
         )}
-        <Command label={t("history_of", { name })} work={() => onPast(record)}>
+        <Command needs="viewer" label={t("history_of", { name })} work={() => onPast(record)}>
           {t("record_history")}
         </Command>
       </td>

@@ -4,33 +4,34 @@ import { useEffect, useState } from "react";
 import { useTranslation } from "react-i18next";
 import { Badge } from "../badge";
 import type { SensingInput } from "../models";
+import { Problem } from "../problem";
+import { repeated } from "../repeated";
 import { Said } from "../said";
 import { get } from "../server";
 import { Table } from "../table";
 
 const EVERY = 2000; // ms
 
-function useInputs(): SensingInput[] | null {
+function useInputs() {
   const [inputs, setInputs] = useState<SensingInput[] | null>(null);
+  const [error, setError] = useState<Error | null>(null);
   useEffect(() => {
-    const look = () =>
-      get("/api/sensing").then(
-        (found) => setInputs(found.inputs),
-        () => {}, // the connection has an alarm of its own
-      );
-    look();
-    const timer = setInterval(look, EVERY);
-    return () => clearInterval(timer);
+    const took = (found: { inputs: SensingInput[] }) => {
+      setInputs(found.inputs);
+      setError(null);
+    };
+    return repeated(() => get("/api/sensing"), took, setError, EVERY);
   }, []);
-  return inputs;
+  return { inputs, error };
 }
 
 export function Sensing() {
   const { t } = useTranslation();
-  const inputs = useInputs();
+  const { inputs, error } = useInputs();
   return (
     <>
       <h2>{t("sensing")}</h2>
+      <Problem id="sensing_problem" error={error} />
       {inputs?.length === 0 && <p id="none_sensing">{t("none_sensing")}</p>}
       <Table
         id="list_sensing"

@@ -3,6 +3,7 @@ import { lazy, Suspense, useState } from "react";
 import { useTranslation } from "react-i18next";
 import { NewRecord } from "../data/new_record";
 import type { Stored } from "../models";
+import { may } from "../role";
 
 const PickPlace = lazy(() => import("../map/pick_place"));
 
@@ -15,6 +16,9 @@ interface Props {
 export function RecordMaker({ machine, records, onMade }: Props) {
   const { t } = useTranslation();
   const [way, setWay] = useState<"fields" | "place" | null>(null);
+  if (!may("admin")) {
+    return null; // a record is an admin's
+  }
   const close = () => setWay(null);
   const made = (name: string) => {
     close();

@@ -3,6 +3,7 @@ import { useState } from "react";
 import { useTranslation } from "react-i18next";
 import { Command } from "../command";
 import { confirmed } from "../confirm";
+import { may } from "../role";
 import { post } from "../server";
 import { described, nameIn } from "../tasks/versions";
 import { texts } from "../texts";
@@ -39,7 +40,7 @@ export function SaveForm({ target, text, changed, onSaved }: Props) {
   const [name, setName] = useState(nameIn(target.description));
   const [comment, setComment] = useState("");
   const isTemplate = target.kind === "template";
-  const allowed = document.body.dataset.role === "admin";
+  const allowed = may("admin");
   const save = async () => {
     const open = isTemplate ? 0 : await errorsIn(text); // what a template leaves to its callers is no error
     const ask = isTemplate ? t("replace_ask", { name: target.name }) : open > 0 ? t("store_ask") : "";
@@ -62,7 +63,7 @@ export function SaveForm({ target, text, changed, onSaved }: Props) {
         <input maxLength={400} value={comment} onChange={(event) => setComment(event.target.value)} />
       </label>
       <div className="bar">
-        <Command className="go" disabled={!allowed || !changed} work={save}>
+        <Command className="go" needs="admin" disabled={!changed} work={save}>
           {t(target.kind === "task" ? "ed_save_version" : "save")}
         </Command>
         {!allowed && <span>{t("ed_only_admin")}</span>}

@@ -3,6 +3,7 @@ import { useState } from "react";
 import { useTranslation } from "react-i18next";
 import { countAt, type Journal } from "../journal/journal";
 import type { Event } from "../models";
+import { Said } from "../said";
 import { Table } from "../table";
 import { clock, said } from "../texts";
 import { kindsOf, type Row, rowsOf, type Wanted } from "./rows";
@@ -40,7 +41,7 @@ export function Events({ journal, time, onTime }: Props) {
               {templates.get(row.event.node) && ` (${t("from_template", { name: templates.get(row.event.node) })})`}
             </td>
             <td>
-              {textOf(row.event)}
+              <Said reason={row.event.reason} text={textOf(row.event)} />
               {row.times > 1 && ` ×${row.times}`}
             </td>
           </tr>

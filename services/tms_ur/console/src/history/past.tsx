@@ -8,6 +8,7 @@ import { useJournal } from "../journal/use_journal";
 import { useLive } from "../live";
 import type { Run } from "../models";
 import { Problem } from "../problem";
+import { Said } from "../said";
 import { clock } from "../texts";
 import { Attempts } from "../tree/attempts";
 import { TreeFlow } from "../tree/flow";
@@ -117,7 +118,7 @@ function Receipts({ journal, onTime }: { journal: Journal; onTime: (time: number
             <button type="button" className="plain_time" onClick={() => onTime(journal.times[index] ?? 0)}>
               {clock(event.stamp)}
             </button>{" "}
-            {textOf(event)}
+            <Said reason={event.reason} text={textOf(event)} />
           </li>
         ))}
       </ul>

@@ -7,6 +7,7 @@ import { Zooms } from "../map/site_map";
 import { useView } from "../map/use_view";
 import { fitted } from "../map/view";
 import type { Recording, State } from "../models";
+import { Problem } from "../problem";
 import { get } from "../server";
 import { dateTime } from "../texts";
 import { useList } from "../use_list";
@@ -28,8 +29,8 @@ interface Props {
 export function PastMap({ recording, seconds }: Props) {
   const { t } = useTranslation();
   const [inSpace, setInSpace] = useState(false);
-  const site = useList(readSite).list;
-  const enabled = useList(readAreas).list;
+  const { list: site, error: noSite } = useList(readSite);
+  const { list: enabled, error: noAreas } = useList(readAreas);
   const box = useRef<HTMLElement>(null);
   const ways = useMemo(
     () => recording.series.filter((one) => one.kind === "pose").flatMap((one) => wayOf(one)),
@@ -54,6 +55,8 @@ export function PastMap({ recording, seconds }: Props) {
         {!inSpace && <Zooms zoom={zoom} fit={fit} />}
         {inSpace && kept && <GroundNote kept={kept} />}
       </div>
+      <Problem id="past_site_problem" what={t("machines")} error={noSite} />
+      <Problem id="past_areas_problem" what={t("areas")} error={noAreas} />
       {/* biome-ignore lint/a11y/noNoninteractiveTabindex: arrow keys move the map */}
       <section id="map_box" className="mapbox past" hidden={inSpace} ref={box} tabIndex={0} aria-label={t("map_keys")}>
         {view && !inSpace && <Picture scene={scene} view={view} size={size} chosen={null} draft={null} />}
@@ -76,10 +79,13 @@ export function PastMap({ recording, seconds }: Props) {
 }
 
 /** When the ground was as it is shown. */
-function GroundNote({ kept: { ground } }: { kept: Kept }) {
+function GroundNote({ kept: { ground, error } }: { kept: Kept }) {
   const { t } = useTranslation();
   if (ground !== null && (ground.rows ?? 0) === 0) {
     return null; // the site keeps none
+  }
+  if (error !== null) {
+    return <Problem id="ground_note" what={t("ground_unread")} error={error} />;
   }
   const text = ground === null ? t("ground_unread") : t("ground_of_now");
   return (

@@ -8,6 +8,7 @@ const AGAIN = 600_000; // ms of the cursor after which the newest ground, or one
 /** A ground, and the times [ms since the epoch] of the cursor that it is true for. */
 export interface Kept {
   ground: Ground | null; // null: it could not be read
+  error: Error | null; // why not
   from: number;
   to: number;
 }
@@ -36,22 +37,22 @@ async function keptAt(time: number): Promise<Kept> {
     return keptFor(await get("/api/ground", {}, asked), time);
   } catch (why) {
     const { reason } = why as { reason?: ReasonView };
-    return reason?.code === "GROUND_NOT_THERE" ? before(time) : unread(time);
+    return reason?.code === "GROUND_NOT_THERE" ? before(time) : unread(time, why as Error);
   }
 }
 
 /** For which times an answer is true. */
 export function keptFor(ground: Ground, time: number): Kept {
   const from = ground.taken_at ? Date.parse(ground.taken_at) : Number.NEGATIVE_INFINITY;
-  return { ground, from, to: ground.next_at ? Date.parse(ground.next_at) : time + AGAIN };
+  return { ground, error: null, from, to: ground.next_at ? Date.parse(ground.next_at) : time + AGAIN };
 }
 
 /** Nothing was kept until then: the ground of now is the best that is known. */
 async function before(time: number): Promise<Kept> {
   return get("/api/ground").then(
-    (ground) => ({ ground, from: Number.NEGATIVE_INFINITY, to: time + 1 }),
-    () => unread(time),
+    (ground) => ({ ground, error: null, from: Number.NEGATIVE_INFINITY, to: time + 1 }),
+    (why: Error) => unread(time, why),
   );
 }
 
-const unread = (time: number): Kept => ({ ground: null, from: time, to: time + AGAIN });
+const unread = (time: number, error: Error): Kept => ({ ground: null, error, from: time, to: time + AGAIN });

@@ -6,6 +6,8 @@ import { Command } from "../command";
 import { confirmed } from "../confirm";
 import type { AreasChecked } from "../models";
 import { Problem } from "../problem";
+import { may } from "../role";
+import { Said } from "../said";
 import { post } from "../server";
 import { said, texts } from "../texts";
 import { added, changed, cornerMoved, cornerRemoved, type Draft, documentOf, removed, TYPES } from "./area_draft";
@@ -147,17 +149,22 @@ function Verdict({ areas, onEnabled, onClose }: { areas: Area[]; onEnabled: () =
       {checked && <Changes changes={checked.changes} />}
       <ul className="rows bad">
         {checked?.refusals.map((one) => (
-          <li key={said(one)}>{said(one)}</li>
+          <li key={said(one)}>
+            <Said reason={one} />
+          </li>
         ))}
       </ul>
       <Problem id="area_problem" error={error} />
       <div className="bar">
-        <Command work={() => attempt(check)}>{t("check_areas")}</Command>
+        <Command needs="viewer" work={() => attempt(check)}>
+          {t("check_areas")}
+        </Command>
         {checked && checked.refusals.length === 0 && checked.changes.length > 0 && (
-          <Command className="go" work={() => attempt(() => enable(checked))}>
+          <Command className="go" needs="admin" work={() => attempt(() => enable(checked))}>
             {t("enable_areas")}
           </Command>
         )}
+        {!may("admin") && <span>{t("only_admin_enables")}</span>}
         <button type="button" onClick={() => download(areas)}>
           {t("download_areas")}
         </button>

@@ -4,6 +4,7 @@ import { useMemo } from "react";
 import { useTranslation } from "react-i18next";
 import { Downloads } from "../downloads";
 import { useLive } from "../live";
+import { Problem } from "../problem";
 import { get } from "../server";
 import { useList } from "../use_list";
 import { Notes } from "./notes";
@@ -15,12 +16,13 @@ const readSite = () => get("/api/site");
 export default function MapPage({ rest }: { rest: string }) {
   const { t } = useTranslation();
   const { state } = useLive();
-  const site = useList(readSite).list;
+  const { list: site, error } = useList(readSite);
   const bodies = useMemo(() => new Map(site?.machines.map((one) => [one.name, one])), [site]);
   const inSpace = rest === "3d";
   return (
     <>
       <h2>{t("p_map")}</h2>
+      <Problem id="site_problem" error={error} />
       {state && <Notes state={state} />}
       {state && site && <SiteMap state={state} bodies={bodies} inSpace={inSpace} />}
       {!inSpace && (

@@ -3,7 +3,7 @@
 import { duration } from "old/dom.js";
 import { useTranslation } from "react-i18next";
 import type { Machine, State } from "../models";
-import { said } from "../texts";
+import { Said } from "../said";
 import { isOld } from "./old_place";
 
 export function Notes({ state }: { state: State }) {
@@ -36,7 +36,11 @@ function Watched({ machine }: { machine: Machine }) {
   const signals = Object.entries(hardware).map(([name, says]) => `${t(`hw_${name}`)}: ${t(`says_${says}`)}`);
   return (
     <>
-      {people && <li>{said(people)}</li>}
+      {people && (
+        <li>
+          <Said reason={people} />
+        </li>
+      )}
       {signals.length > 0 && (
         <li>
           {machine.name}: {signals.join(", ")}

@@ -3,6 +3,8 @@
 import { lazy, Suspense, useMemo, useRef, useState } from "react";
 import { useTranslation } from "react-i18next";
 import type { SiteMachine, State } from "../models";
+import { Problem } from "../problem";
+import { may } from "../role";
 import { get } from "../server";
 import { useList } from "../use_list";
 import { clicked, type Draft, draftOf } from "./area_draft";
@@ -36,7 +38,7 @@ export function SiteMap({ state, bodies, inSpace, picking }: Props) {
   const { t } = useTranslation();
   const { list: enabled, error, again: readAgain } = useList(readAreas);
   const [draft, setDraft] = useState<Draft | null>(null);
-  const { list: records, again } = useList(readRecords);
+  const { list: records, error: noRecords, again } = useList(readRecords);
   const [chosen, setChosen] = useState<Flat | null>(null);
   const [follow, setFollow] = useState("");
   const [all, setAll] = useState(false);
@@ -47,7 +49,7 @@ export function SiteMap({ state, bodies, inSpace, picking }: Props) {
     const places = placesOf(records ?? [], state.runs).filter((one) => all || one.goal);
     return { state, bodies, areas, records: places, trails: trailsOf(state.machines) };
   }, [state, bodies, areas, records, all]);
-  const ground = useGround(inSpace);
+  const { ground, error: noGround } = useGround(inSpace);
   const place = state.machines.find((one) => one.name === follow)?.place;
   // nothing is fitted before the areas are known: the view is not to jump when they come
   const known = enabled !== null || error !== null;
@@ -56,7 +58,7 @@ export function SiteMap({ state, bodies, inSpace, picking }: Props) {
     known ? outermost(scene) : [],
     place ? [place.x, place.y] : undefined,
     () => setFollow(""),
-    (at, scale) => (draft ? setDraft(clicked(draft, at, REACH / scale)) : setChosen(at)),
+    (at, scale) => (draft ? setDraft(clicked(draft, at, REACH / scale)) : may("admin") && setChosen(at)),
   );
   const draw = () => {
     setChosen(null);
@@ -89,6 +91,9 @@ export function SiteMap({ state, bodies, inSpace, picking }: Props) {
         )}
         {inSpace && <Choice id="design" text={t("design_surface")} chosen={design} choose={setDesign} />}
       </section>
+      <Problem id="areas_problem" what={t("areas")} error={error} />
+      <Problem id="records_problem" what={t("p_data")} error={noRecords} />
+      <Problem id="ground_problem" what={t("ground")} error={noGround} />
       {/* biome-ignore lint/a11y/noNoninteractiveTabindex: arrow keys move the map */}
       <section id="map_box" className="mapbox" hidden={inSpace} ref={box} tabIndex={0} aria-label={t("map_keys")}>
         {view && !inSpace && <Picture scene={scene} view={view} size={size} chosen={chosen} draft={draft} />}

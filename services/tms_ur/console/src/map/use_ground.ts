@@ -6,15 +6,24 @@ import { get } from "../server";
 
 const EVERY = 10_000; // ms between two looks at the ground
 
-/** null until it is read. */
-export function useGround(shown: boolean): Ground | null {
-  const [ground, setGround] = useState<Ground | null>(null);
+interface Found {
+  ground: Ground | null; // null: it was not read yet
+  error: Error | null; // why the last look has failed; the ground stays as it was
+}
+
+export function useGround(shown: boolean): Found {
+  const [found, setFound] = useState<Found>({ ground: null, error: null });
   useEffect(() => {
     if (!shown) {
       return;
     }
-    const failed = () => undefined; // it stays as it was; the next look may be luckier
-    return repeated(() => get("/api/ground"), setGround, failed, EVERY);
+    const took = (ground: Ground) => setFound({ ground, error: null });
+    return repeated(
+      () => get("/api/ground"),
+      took,
+      (error) => setFound((before) => ({ ...before, error })),
+      EVERY,
+    );
   }, [shown]);
-  return ground;
+  return shown ? found : { ...found, error: null };
 }

@@ -4,6 +4,7 @@ import { useTranslation } from "react-i18next";
 import { Command } from "../command";
 import { confirmed } from "../confirm";
 import type { Checked, ReasonView } from "../models";
+import { may } from "../role";
 import { post } from "../server";
 import { texts } from "../texts";
 import type { Given } from "./upload";
@@ -39,6 +40,9 @@ interface Props {
 export function StoreForm({ given, found, changed }: Props) {
   const { t } = useTranslation();
   const [description, setDescription] = useState("");
+  if (!may("admin")) {
+    return <p>{t("ed_only_admin")}</p>;
+  }
   return (
     <>
       <label>
@@ -53,13 +57,16 @@ export function StoreForm({ given, found, changed }: Props) {
       <div className="bar">
         <Command
           id="store"
+          needs="admin"
           className="go"
           disabled={found === null}
           work={() => storeTask(given.xml, description, found).finally(changed)}
         >
           {t("store")}
         </Command>
-        <Command work={() => storeTemplate(given, description).finally(changed)}>{t("store_template")}</Command>
+        <Command needs="admin" work={() => storeTemplate(given, description).finally(changed)}>
+          {t("store_template")}
+        </Command>
       </div>
     </>
   );

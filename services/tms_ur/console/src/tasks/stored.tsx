@@ -95,14 +95,18 @@ function Row({ task, before, changed, compare, children }: RowProps) {
         <a className="button" href={`#editor/${id}`} aria-label={t("ed_edit_task", { id })}>
           {t("edit")}
         </a>
-        <Command label={t("download_task", { id })} work={() => download(id)}>
+        <Command needs="viewer" label={t("download_task", { id })} work={() => download(id)}>
           {t("download")}
         </Command>
-        <Command label={t("remove_task", { id })} work={() => remove(id).finally(changed)}>
+        <Command needs="admin" label={t("remove_task", { id })} work={() => remove(id).finally(changed)}>
           {t("remove")}
         </Command>
         {before && (
-          <Command label={t("compare_versions", { id, before: before.id })} work={() => compare(task, before)}>
+          <Command
+            needs="viewer"
+            label={t("compare_versions", { id, before: before.id })}
+            work={() => compare(task, before)}
+          >
             {t("difference")}
           </Command>
         )}

@@ -3,7 +3,8 @@ import { duration } from "old/dom.js";
 import { useTranslation } from "react-i18next";
 import { type Attempt, attemptsOf } from "../journal/attempts";
 import type { Journal } from "../journal/journal";
-import { clock, said } from "../texts";
+import { Said } from "../said";
+import { clock } from "../texts";
 import { WORDS } from "./node_box";
 import type { TreeNode } from "./shape";
 
@@ -40,11 +41,15 @@ function Try({ attempt, now, journal }: { attempt: Attempt; now: number; journal
   const { t } = useTranslation();
   const { begin, end, state } = attempt;
   const word = state === "idle" ? "halted" : WORDS[state];
-  const reason = state === "failure" ? said(journal.events[attempt.event]?.reason) : "";
+  const reason = state === "failure" ? journal.events[attempt.event]?.reason : null;
   return (
     <li>
       {clock(new Date(begin).toISOString())} {duration(Math.max(0, (end ?? now) - begin) / 1000)} {t(word)}
-      {reason && <div>{reason}</div>}
+      {reason && (
+        <div>
+          <Said reason={reason} />
+        </div>
+      )}
     </li>
   );
 }
