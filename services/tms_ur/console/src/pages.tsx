@@ -5,6 +5,7 @@ import { PAGE_NAMES } from "old/words.js";
 import { type ComponentType, lazy, Suspense, useEffect, useSyncExternalStore } from "react";
 import { useTranslation } from "react-i18next";
 import { Board } from "./board/board";
+import { PaperHead } from "./print";
 
 type Page = ComponentType<{ rest: string }>; // `rest`: what stands behind its name in the address
 
@@ -39,6 +40,7 @@ export function Pages() {
         ))}
       </nav>
       <main id="main" tabIndex={-1}>
+        <PaperHead name={name} />
         <div id="page" data-page={name}>
           <Suspense>
             <Chosen rest={rest.join("/")} />

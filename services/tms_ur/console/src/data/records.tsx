@@ -31,7 +31,7 @@ export function Records({ records, onEdit, onNew, onPast }: Props) {
         </button>
       )}
       {found?.length === 0 && <p id="none_records">{t("none_records")}</p>}
-      <Table id="list_records" label="p_data" heads={["record", "type", "age", "source", "values", "commands"]}>
+      <Table id="list_records" label="p_data" heads={["record", "type", "age", "source", "values", "commands"]} blocks>
         {found?.map((record) => (
           <Row key={nameOf(record)} record={record} onEdit={onEdit} onPast={onPast} />
         ))}
@@ -48,12 +48,12 @@ function Row({ record, onEdit, onPast }: RowProps) {
   return (
     <tr>
       <td>{name}</td>
-      <td>{t(record.type)}</td>
-      <td data-part="age">
+      <td data-label={t("type")}>{t(record.type)}</td>
+      <td data-part="age" data-label={t("age")}>
         <Age stamp={record.updated_at} />
       </td>
-      <td>{record.source}</td>
-      <td className="values">{listed(record.values, record)}</td>
+      <td data-label={t("source")}>{record.source}</td>
+      <td className="values wide">{listed(record.values, record)}</td>
       <td className="bar">
         {record.type === "static" && may("admin") && (
           <button type="button" aria-label={t("edit_record", { name })} onClick={() => onEdit(record)}>

@@ -37,6 +37,7 @@ export function Sensing() {
         id="list_sensing"
         label="sensing"
         heads={["input", "state", "topic", "hz", "age", "accepted", "refusals", "last_refusal", "record"]}
+        blocks
       >
         {inputs?.map((one) => (
           <Row key={one.name} one={one} />
@@ -47,6 +48,7 @@ export function Sensing() {
 }
 
 function Row({ one }: { one: SensingInput }) {
+  const { t } = useTranslation();
   const rate = one.hz.toFixed(1) + (one.hz_expected === null ? "" : ` / ${one.hz_expected}`);
   return (
     <tr>
@@ -54,15 +56,15 @@ function Row({ one }: { one: SensingInput }) {
       <td>
         <Badge state={one.state === "silent" ? "no_messages" : one.state} />
       </td>
-      <td>{one.topic}</td>
-      <td>{rate} Hz</td>
-      <td>{one.age === null ? "-" : duration(one.age)}</td>
-      <td>{one.accepted}</td>
-      <td>{one.refused}</td>
-      <td>
+      <td className="wide">{one.topic}</td>
+      <td data-label={t("hz")}>{rate} Hz</td>
+      <td data-label={t("age")}>{one.age === null ? "-" : duration(one.age)}</td>
+      <td data-label={t("accepted")}>{one.accepted}</td>
+      <td data-label={t("refusals")}>{one.refused}</td>
+      <td className="wide">
         <Said reason={one.last_refusal} />
       </td>
-      <td>{one.records.join(", ")}</td>
+      <td data-label={t("record")}>{one.records.join(", ")}</td>
     </tr>
   );
 }

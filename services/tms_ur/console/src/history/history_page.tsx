@@ -28,6 +28,7 @@ export default function HistoryPage({ rest }: { rest: string }) {
         id="list_history"
         label="history"
         heads={["task", "started_at", "state", "machines", "duration", "reason", "show"]}
+        blocks
       >
         {list?.map((run) => (
           <Row key={run.run_id} run={run} chosen={run.run_id === chosen} />
@@ -49,13 +50,13 @@ function Row({ run, chosen }: { run: Run; chosen: boolean }) {
   return (
     <tr aria-current={chosen}>
       <td>{`${run.task_id} ${run.description}`}</td>
-      <td>{dateTime(run.started_at)}</td>
+      <td data-label={t("started_at")}>{dateTime(run.started_at)}</td>
       <td>
         <Badge state={run.state} />
       </td>
-      <td>{run.machines.join(", ")}</td>
-      <td>{seconds === null ? "-" : duration(seconds)}</td>
-      <td>
+      <td data-label={t("machines")}>{run.machines.join(", ")}</td>
+      <td data-label={t("duration")}>{seconds === null ? "-" : duration(seconds)}</td>
+      <td className="wide">
         <Said reason={run.reason} />
       </td>
       <td>

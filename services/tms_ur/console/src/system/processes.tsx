@@ -11,7 +11,6 @@ import { Said } from "../said";
 import { Table } from "../table";
 import { ProcessLog } from "./log";
 import { type Row, rowsOf } from "./rows";
-import "./processes.css";
 
 const HEADS = 8; // columns
 const QUIET = new Set(["RUNNING", "STOPPED"]); // states of which supervisord only tells the time
@@ -38,6 +37,7 @@ export function Processes({ state, open, onOpen }: Props) {
         id="list_processes"
         label="processes"
         heads={["process", "host", "state", "uptime", "cpu", "memory", "restarts", "log"]}
+        blocks
       >
         {rows.map((row) => (
           <Fragment key={`${row.host}/${row.process.name}`}>

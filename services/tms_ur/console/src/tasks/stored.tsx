@@ -9,6 +9,7 @@ import { startTask } from "../start";
 import { Table } from "../table";
 import { dateTime, texts } from "../texts";
 import { Difference } from "./difference";
+import { Moved } from "./moved";
 import { versionsOf } from "./versions";
 
 async function remove(id: number): Promise<string> {
@@ -44,7 +45,7 @@ export function Stored({ tasks, changed }: { tasks: Task[]; changed: () => void 
   };
   return (
     <>
-      <Table id="list_stored" label="tasks" heads={["task", "model", "description", "added_at", "commands"]}>
+      <Table id="list_stored" label="tasks" heads={["task", "machines", "description", "added_at", "commands"]} blocks>
         {versionsOf(tasks).flatMap((versions) => {
           const first = versions[0];
           const isOpen = first !== undefined && open.has(first.id);
@@ -85,9 +86,11 @@ function Row({ task, before, changed, compare, children }: RowProps) {
   return (
     <tr data-task={id}>
       <td>{id}</td>
-      <td>{task.model_name}</td>
-      <td>{task.description}</td>
-      <td>{dateTime(task.added_at)}</td>
+      <td data-label={t("machines")}>
+        <Moved task={task} />
+      </td>
+      <td className="wide">{task.description}</td>
+      <td data-label={t("added_at")}>{dateTime(task.added_at)}</td>
       <td className="bar">
         <Command className="go" label={t("start_task", { id })} work={() => startTask(task)}>
           {t("start")}

@@ -35,16 +35,17 @@ export default function TasksPage() {
 }
 
 function Templates({ templates }: { templates: Template[] }) {
+  const { t } = useTranslation();
   return (
-    <Table id="list_templates" label="templates" heads={["name", "model", "description", "added_at"]}>
+    <Table id="list_templates" label="templates" heads={["name", "model", "description", "added_at"]} blocks>
       {templates.map((template) => (
         <tr key={template.name}>
           <td data-part="name">
             <a href={`#editor/template/${encodeURIComponent(template.name)}`}>{template.name}</a>
           </td>
-          <td>{template.model_name}</td>
+          <td data-label={t("model")}>{template.model_name}</td>
           <td>{template.description}</td>
-          <td>{dateTime(template.added_at)}</td>
+          <td data-label={t("added_at")}>{dateTime(template.added_at)}</td>
         </tr>
       ))}
     </Table>

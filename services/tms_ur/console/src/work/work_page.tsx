@@ -33,7 +33,9 @@ export default function WorkPage({ rest }: { rest: string }) {
   const report = (day: string, form: string) => `/api/work/report?day=${day}&form=${form}&language=${i18n.language}`;
   return (
     <>
-      <h2>{t("p_work")}</h2>
+      <h2>
+        {t("p_work")} <span className="paper">{work?.day}</span>
+      </h2>
       <Problem id="work_problem" error={error} />
       {work && <Days day={work.day} />}
       {work && (
