@@ -48,7 +48,7 @@ def address(yard: Full, tmp_path: Path) -> Iterator[str]:
 @pytest.mark.parametrize(
     ("place", "table", "buttons", "figure"),
     [
-        ("tasks", "#list_stored", ("Start task 5", "Download task 5", "Remove task 5"), "Added"),
+        ("tasks", "#list_stored", ("Start task 5", "Download task 5", "Remove task 5"), "Stored at"),
         ("history", "#list_history", ("Show run r-1",), "Duration"),
         ("data", "#list_records", ("Edit zx200/pose", "History of zx200/pose"), "Source"),
     ],
