@@ -36,14 +36,15 @@ interface Props {
   rest: string; // of the address
   site: Site;
   target: Target;
+  other: string; // number of the task to which the difference is open at first, empty: none
   onRecord: () => void; // a record was made
 }
 
-export function Editor({ rest, site, target, onRecord }: Props) {
+export function Editor({ rest, site, target, other, onRecord }: Props) {
   const { t } = useTranslation();
   const [drafts, setDrafts] = useDrafts(rest, target, site);
   const [where, setWhere] = useState<Where>("inside");
-  const [comparing, setComparing] = useState(false);
+  const [comparing, setComparing] = useState(other !== "");
   const { text, chosen } = drafts.now;
   const trees = useMemo(() => treesOf(text, site.types), [text, site]);
   const tree = trees.find((one) => one.id === drafts.now.tree) ?? trees[0];
@@ -85,7 +86,7 @@ export function Editor({ rest, site, target, onRecord }: Props) {
             {node ? t("ed_is_chosen", { node: `${node.type} ${node.machine} ${node.label}`.trim() }) : t("ed_choose")}
           </p>
           {comparing ? (
-            <VersionsView tree={tree} stored={drafts.stored} tasks={site.tasks} types={site.types} />
+            <VersionsView tree={tree} stored={drafts.stored} first={other} tasks={site.tasks} types={site.types} />
           ) : (
             <Canvas
               key={tree.id}

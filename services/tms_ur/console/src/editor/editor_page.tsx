@@ -1,4 +1,5 @@
-// Draws tasks and templates: `#editor/new`, `#editor/NUMBER`, `#editor/template/NAME`.
+// Draws tasks and templates: `#editor/new`, `#editor/NUMBER`, `#editor/template/NAME`. With `/difference/NUMBER` behind it
+// the difference to that task is open.
 import { useEffect, useState } from "react";
 import { useTranslation } from "react-i18next";
 import { Problem } from "../problem";
@@ -25,8 +26,9 @@ function broken(text: string): number | null {
   }
 }
 
-export default function EditorPage({ rest }: { rest: string }) {
+export default function EditorPage({ rest: address }: { rest: string }) {
   const { t } = useTranslation();
+  const [rest = "", other = ""] = address.split("/difference/");
   const [loaded, setLoaded] = useState<Loaded | null>(null);
   const [error, setError] = useState<Error | null>(null);
   useEffect(() => {
@@ -59,7 +61,7 @@ export default function EditorPage({ rest }: { rest: string }) {
       </p>
       <Problem error={error} />
       {line !== null && <p className="bad">{t("ed_broken", { line })}</p>}
-      {shown && line === null && <Editor key={rest} {...shown} onRecord={withRecords} />}
+      {shown && line === null && <Editor key={address} {...shown} other={other} onRecord={withRecords} />}
     </>
   );
 }

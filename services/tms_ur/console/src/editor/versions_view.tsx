@@ -15,15 +15,16 @@ import { Picture } from "./picture";
 interface Props {
   tree: EditTree;
   stored: string; // text, empty: there is none
+  first: string; // number of the task that it is compared with at first, empty: the stored one, or the last
   tasks: Task[];
   types: Types;
 }
 
 const SHOWN: Change[] = ["added", "removed", "changed"];
 
-export function VersionsView({ tree, stored, tasks, types }: Props) {
+export function VersionsView({ tree, stored, first, tasks, types }: Props) {
   const { t } = useTranslation();
-  const [other, setOther] = useState(stored === "" ? String(tasks.at(-1)?.id ?? "") : "");
+  const [other, setOther] = useState(first || (stored === "" ? String(tasks.at(-1)?.id ?? "") : ""));
   const [text, setText] = useState(stored);
   const [error, setError] = useState<Error | null>(null);
   useEffect(() => {

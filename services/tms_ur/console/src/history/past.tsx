@@ -18,6 +18,7 @@ import { Cursor } from "./cursor";
 import { Events, textOf } from "./events";
 import { LaneView } from "./lane_view";
 import { Motion } from "./motion";
+import { RecordThen } from "./record_then";
 import { recordedUntil } from "./recording";
 import { useRecording } from "./use_recording";
 
@@ -84,7 +85,12 @@ function PastTree({ journal, time }: { journal: Journal; time: number }) {
   const moment = momentAfter(journal, count);
   const [shown, setShown] = useState(false);
   const spent = useMemo(() => (shown ? spentIn(journal, count, time) : null), [shown, journal, count, time]);
-  const facts = (node: TreeNode) => <Attempts journal={journal} count={count} now={time} node={node} />;
+  const facts = (node: TreeNode) => (
+    <>
+      <RecordThen key={node.path} node={node} time={time} />
+      <Attempts journal={journal} count={count} now={time} node={node} />
+    </>
+  );
   const timing = { shown, spent, onShow: setShown };
   return journal.tree && <TreeFlow tree={journal.tree} {...moment} facts={facts} timing={timing} />;
 }

@@ -1,5 +1,5 @@
 // The stored tasks: the newest version of each, older ones on request.
-import { useState } from "react";
+import { useEffect, useRef, useState } from "react";
 import { useTranslation } from "react-i18next";
 import { Command } from "../command";
 import { confirmed } from "../confirm";
@@ -36,11 +36,11 @@ async function difference(task: Task, before: Task): Promise<string> {
 
 export function Stored({ tasks, changed }: { tasks: Task[]; changed: () => void }) {
   const [open, setOpen] = useState(new Set<number>());
-  const [shown, setShown] = useState<string | null>(null);
+  const [shown, setShown] = useState<Shown | null>(null);
   const toggle = (id: number, isOpen: boolean) =>
     setOpen((before) => new Set(isOpen ? [...before].filter((one) => one !== id) : [...before, id]));
   const compare = async (task: Task, before: Task) => {
-    setShown(await difference(task, before));
+    setShown({ text: await difference(task, before), task, before });
     return "";
   };
   return (
@@ -58,8 +58,32 @@ export function Stored({ tasks, changed }: { tasks: Task[]; changed: () => void 
           ));
         })}
       </Table>
-      {shown !== null && <Difference id="version_difference" text={shown} />}
+      {shown !== null && <Compared {...shown} />}
     </>
+  );
+}
+
+interface Shown {
+  text: string; // of the difference
+  task: Task;
+  before: Task;
+}
+
+/** It stands below a long table: the page goes there. */
+function Compared({ text, task, before }: Shown) {
+  const { t } = useTranslation();
+  const section = useRef<HTMLElement>(null);
+  const label = t("compare_versions", { id: task.id, before: before.id });
+  // biome-ignore lint/correctness/useExhaustiveDependencies: another difference is shown
+  useEffect(() => void section.current?.scrollIntoView(), [task, before]);
+  return (
+    <section id="versions" aria-label={label} ref={section}>
+      <h3>{label}</h3>
+      <a className="button" href={`#editor/${task.id}/difference/${before.id}`}>
+        {t("difference_picture")}
+      </a>
+      <Difference id="version_difference" text={text} />
+    </section>
   );
 }
 
