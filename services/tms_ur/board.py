@@ -4,10 +4,13 @@ import threading
 from collections.abc import Callable, Iterable
 
 from tms_config.clock import monotonic, utc_now
+from tms_ur.alarm_keeper import AlarmKeeper
+from tms_ur.alarms import HOST_SILENT, Facts
 from tms_ur.models import ActiveRun, Host, LastStop, Load, Machine, Place, Process, Question, Scheduler
 from tms_ur.place_models import SharedPlaces
 from tms_ur.reason_view import view
 from tms_ur.reasons import MachineSilent, MachineUnheard
+from tms_ur.recent import Recent
 from tms_ur.state_models import State
 from tms_ur.watch_models import SeenBy, Watched
 
@@ -15,7 +18,7 @@ MACHINE_SILENT = 2.0  # s, four periods of a machine's gateway
 SCHEDULER_SILENT = 5.0  # s, five periods of the scheduler's list of runs
 WAY_LIVES = 3.0  # s, three periods of a navigation that tells the way that it drives
 LOAD_LIVES = 3.0  # s: tms:ground tells loads all the time
-HOST_SILENT = 6.0  # s, three periods of a host agent; after that its PC may have no power
+INPUTS_LIVE = 3.0  # s, three periods of tms:sp
 
 
 class Board:
@@ -36,6 +39,10 @@ class Board:
         self._seen: list[SeenBy] = []
         self._runs_at: float | None = None
         self._hosts: dict[str, tuple[Host, float]] = {}
+        self._unconfirmed, self._stood_in, self._restarts = Recent(), Recent(), Recent()
+        self._standing_in: set[str] = set()
+        self._inputs: tuple[dict[str, str], float] | None = None
+        self._alarms = AlarmKeeper()
         self._listeners: list[Callable[[], None]] = []
         self.closed = False
 
@@ -79,7 +86,22 @@ class Board:
         """Take the last stop of a machine."""
         with self._lock:
             self._stops[name] = stop
+            if not stop.confirmed and stop.stamp is not None:
+                self._unconfirmed.put(name, self._clock() - (utc_now() - stop.stamp).total_seconds())
         self._publish()
+
+    def put_standing_in(self, name: str, commands: bool) -> None:
+        """Take whether a host agent commands a machine in place of its lost gateway."""
+        with self._lock:
+            if commands and name not in self._standing_in:
+                self._stood_in.put(name, self._clock())
+            (self._standing_in.add if commands else self._standing_in.discard)(name)
+        self._publish()
+
+    def put_inputs(self, states: dict[str, str]) -> None:
+        """Take the states of all sensing inputs."""
+        with self._lock:
+            self._inputs = states, self._clock()
 
     def put_watched(self, name: str, watched: Watched) -> None:
         """Take what a gateway watches besides motion."""
@@ -115,6 +137,9 @@ class Board:
     def put_host(self, host: Host) -> None:
         """Take all processes of one PC; its agent publishes them at every change, and every 2 s without one."""
         with self._lock:
+            before, _ = self._hosts.get(host.name, (host, 0.0))
+            for name in restarted(before, host):
+                self._restarts.put(name, self._clock())
             self._hosts[host.name] = (host, self._clock())
         self._publish()
 
@@ -139,7 +164,7 @@ class Board:
         """The present state."""
         with self._lock:
             now = self._clock()
-            return State(
+            state = State(
                 time=utc_now(),
                 machines=[
                     _aged(machine, now, at, self._places.get(name), self._stops.get(name)).model_copy(
@@ -158,6 +183,14 @@ class Board:
                 hosts=[_host(host, now - at) for _, (host, at) in sorted(self._hosts.items())],
                 shared=self._shared,
             )
+            return state.model_copy(update={"alarms": self._alarms.judge(self._facts(state, now))})
+
+    def _facts(self, state: State, now: float) -> Facts:
+        inputs, told = self._inputs or ({}, now)
+        return Facts(
+            state, now, self._unconfirmed, self._stood_in, frozenset(self._standing_in), self._restarts,
+            inputs if now - told < INPUTS_LIVE else {},
+        )  # fmt: skip
 
     def _way(self, name: str, now: float) -> list[tuple[float, float]]:
         way, at = self._ways.get(name, ([], now))
@@ -170,6 +203,16 @@ class Board:
     def _publish(self) -> None:
         for listener in self._listeners:
             listener()
+
+
+def restarted(before: Host, host: Host) -> list[str]:
+    """The processes that a host agent has seen end between two of its messages, once for each time."""
+    counted = {process.name: process.restarts for process in before.processes}
+    return [
+        process.name
+        for process in host.processes
+        for _ in range(process.restarts - counted.get(process.name, process.restarts))
+    ]
 
 
 def _content(machine: Machine) -> Machine:

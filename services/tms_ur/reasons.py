@@ -2,7 +2,7 @@
 
 from tms_reason.quantities import Seconds
 from tms_reason.reason import Reason
-from tms_reason.remedies import CHECK, EDIT_CONFIG, LOGS, PROCESSES, RETRY, RUNS, Remedy
+from tms_reason.remedies import CHECK, EDIT_CONFIG, INSPECT, LOGS, PROCESSES, REARM, RETRY, RUNS, STATUS, Remedy
 
 ADD_USER = Remedy("users", "tms user add NAME --role admin", "Add its users")
 
@@ -63,6 +63,30 @@ class GroundNotRead(Reason, text="the ground of {time} cannot be read ({problem}
 class StartRefused(Reason, text="the scheduler did not take the task", action=LOGS): process: str
 class MachineUnheard(Reason, text="{process} has not reported yet", action=PROCESSES): process: str
 class MachineSilent(Reason, text="{process} has said nothing for {age}", action=PROCESSES): process: str; age: Seconds
+
+# alarms, as deploy/prometheus/rules.yml tells them
+class StopNotSeen(Reason, text="{machine} was told to stop and was not seen to stand", action=REARM,
+    details="keep away from the machine, look at it, use its own emergency stop"): machine: str
+class LatchHeld(Reason, text="{machine} has been stopped for long and waits for a person to re-arm it",
+    action=REARM): machine: str
+class NewsOld(Reason, text="nothing is heard of {machine}: its joint states or odometry are old", action=INSPECT,
+    details="a machine that is not heard is not moved: is it switched on, and its PC in the network?"): machine: str
+class TwoGateways(Reason, text="{machine} has two gateways: only the first one serves, and takes no goals",
+    action=STATUS, details="two PCs of the site, or two sites in one ROS domain, have this machine"): machine: str
+class StoodIn(Reason, text="the gateway of {machine} was lost: the host agent has stopped the machine in its place",
+    action=LOGS): machine: str; process: str
+class PcSilent(Reason, text="PC {pc} says nothing: its power or network", action=STATUS): pc: str
+class ProcessDown(Reason, text="process {process} does not run", action=LOGS): process: str
+class NoWord(Reason, text="process {process} does not answer", action=LOGS): process: str
+class DiscoveryDown(Reason,
+    text="the discovery server does not run: processes that start do not find the others", action=LOGS,
+    details="connections that are there go on"): process: str
+class LongUnready(Reason, text="process {process} has not been able to work for a while", action=LOGS): process: str
+class CrashLoop(Reason, text="process {process} ends again and again", action=LOGS): process: str
+class InputQuiet(Reason, text="sensing input {input} has fallen silent",
+    details="is the sensing PC on, does its node publish? Records with max_age refuse to be used meanwhile"): input: str
+class SensingClockOff(Reason, text="the clock behind sensing input {input} is off",
+    details="`chronyc tracking` on the sensing PC: the age of its values is not known"): input: str
 
 # the console itself
 class ServerEnded(Reason, text="the web server has ended", action=LOGS): process: str

@@ -38,7 +38,7 @@ from tms_reason import wire
 from tms_reason.errors import TmsError
 from tms_reason.reason import Reason
 from tms_ros.node import Ros
-from tms_ur import messages
+from tms_ur import alarm_topics, messages
 from tms_ur.answers import checked
 from tms_ur.area_client import check_areas, enable_areas
 from tms_ur.board import Board
@@ -90,6 +90,7 @@ class SiteClient(MachineCalls):
         ros.subscribe(Processes, "/tms/host/processes", self._on_processes, depth=10, latched=True)
         ros.subscribe(InputStates, "/tms/sp/inputs", self._on_inputs, latched=True)
         ros.poll_in_thread(PERIOD, self._update_places, "places")
+        alarm_topics.listen(ros, names, self.board)
 
     # topics
 

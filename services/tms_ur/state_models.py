@@ -4,6 +4,7 @@ from datetime import datetime
 
 from pydantic import Field
 
+from tms_ur.alarm_models import Alarm
 from tms_ur.base_model import Model
 from tms_ur.models import ActiveRun, Host, Machine, Question, Scheduler
 from tms_ur.place_models import SharedPlaces
@@ -21,3 +22,6 @@ class State(Model):
     seen: list[SeenBy] = Field(default=[], description="what trackers of people, vehicles and gates tell")
     hosts: list[Host]
     shared: SharedPlaces = SharedPlaces()
+    alarms: list[Alarm] = Field(
+        default=[], description="by the rules of Prometheus, as far as tms:ur knows their facts; the critical first"
+    )

@@ -102,10 +102,31 @@ def test_a_process_that_cannot_be_kept_up_is_an_alarm(page: Page, address: str, 
     rows = [Process(name="tms:db", state="FATAL"), Process(name="zx200:st_swing", state="STOPPED")]
     yard.board.put_host(Host(name="pc", processes=rows))
     page.goto(f"{address}/#board")
-    expect(page.locator("#list_alarms li")).to_contain_text(["Process tms:db does not run."])
+    alarms, light = page.locator("#list_alarms li"), page.locator("#light")
+    expect(alarms).to_contain_text(["⬣ Critical process tms:db ends again and again"])
+    expect(light).to_contain_text("Needs a look")
     yard.now += 7
     yard.receive()
-    expect(page.locator("#list_alarms li")).to_contain_text(["PC pc says nothing."])
+    yard.board.snapshot()
+    expect(alarms).to_have_count(0)
+    yard.now += 15
+    yard.receive()
+    expect(alarms).to_contain_text(["⬣ Critical PC pc says nothing"])
+
+
+def test_an_alarm_offers_what_helps(page: Page, address: str, yard: Waiting) -> None:
+    """And it says how urgent it is in more than colour."""
+    yard.receive(latch=view(SoftwareStop()))
+    yard.board.snapshot()
+    yard.now += 600
+    yard.receive(latch=view(SoftwareStop()))
+    page.goto(f"{address}/#board")
+    alarm = page.locator("#list_alarms li").filter(has_text="ic120")
+    expect(alarm).to_contain_text("▲ Warning ic120 has been stopped for long")
+    alarm.get_by_role("button", name="Look at the machine, then re-arm it").click()
+    page.get_by_role("button", name="Do it").click()
+    expect(page.locator("#message")).to_contain_text("ic120")
+    assert [call[1] for call in yard.calls if call[0] == "rearm"] == ["ic120", "ic120"]
 
 
 def test_a_shared_place_is_taken_from_its_holder(page: Page, address: str, yard: Waiting) -> None:

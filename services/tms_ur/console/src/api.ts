@@ -890,6 +890,35 @@ export interface components {
             replaced: boolean;
         };
         /**
+         * Alarm
+         * @description A rule of deploy/prometheus/rules.yml that holds for something now, and has held for as long as it must.
+         */
+        Alarm: {
+            /**
+             * Name
+             * @description of the rule, as Prometheus has it
+             */
+            name: string;
+            /**
+             * Severity
+             * @description critical: look now; warning: look today
+             * @enum {string}
+             */
+            severity: "critical" | "warning";
+            /**
+             * Subject
+             * @description the machine, process, PC or sensing input that it is about
+             */
+            subject: string;
+            reason: components["schemas"]["ReasonView"];
+            /**
+             * Since
+             * Format: date-time
+             * @description since when this console has seen it
+             */
+            since: string;
+        };
+        /**
          * AnswerGiven
          * @description The answer to a question of a run.
          */
@@ -2217,6 +2246,12 @@ export interface components {
              *     }
              */
             shared: components["schemas"]["SharedPlaces"];
+            /**
+             * Alarms
+             * @description by the rules of Prometheus, as far as tms:ur knows their facts; the critical first
+             * @default []
+             */
+            alarms: components["schemas"]["Alarm"][];
         };
         /**
          * StopAsked

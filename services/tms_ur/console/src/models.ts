@@ -3,6 +3,7 @@ import type { components } from "./api";
 
 type Models = components["schemas"];
 export type ActiveRun = Models["ActiveRun"];
+export type Alarm = Models["Alarm"];
 export type AreasChecked = Models["AreasChecked"];
 export type Checked = Models["Checked"];
 export type EnabledAreas = Models["EnabledAreas"];
@@ -12,6 +13,7 @@ export type Finding = Models["Finding"];
 export type Ground = Models["Ground"];
 export type Joint = Models["Joint"];
 export type Machine = Models["Machine"];
+export type Process = Models["Process"];
 export type Question = Models["Question"];
 export type ReasonView = Models["ReasonView"];
 export type RecordChange = Models["Change"];

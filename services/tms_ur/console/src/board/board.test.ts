@@ -1,6 +1,5 @@
 import { describe, expect, test } from "vitest";
 import type { ActiveRun, Machine, ReasonView, State } from "../models";
-import { alarmsOf, type Process } from "./alarms";
 import { doingOf } from "./doing";
 import { lightOf } from "./light";
 
@@ -32,6 +31,10 @@ describe("the light of the site", () => {
     expect(lightOf(site(machines), true, needed).light).toBe(light);
   });
 
+  test("waits for a person while the scheduler says nothing", () => {
+    expect(lightOf(site([armed], { scheduler: { alive: false, age: 6 } }), true, 0).light).toBe("attention");
+  });
+
   test("names the machines that make it so", () => {
     const machines = [armed, machine("b", { latch: WHY })];
     expect(lightOf(site(machines), true, 0).machines).toEqual(["b"]);
@@ -40,19 +43,6 @@ describe("the light of the site", () => {
   test.each([false, null])("is unknown without a connection (%s)", (link) => {
     expect(lightOf(site([machine("a", { latch: WHY })]), link, 0).light).toBe("unknown");
   });
-});
-
-test("alarms tell of what is away, and of a silent PC only that", () => {
-  const process = (state: string, on_demand = false) => ({ name: `p:${state}`, state, on_demand }) as Process;
-  const idle = { ...process("STOPPED", true), name: "idle" };
-  const lost = { ...process("FATAL", true), name: "lost" };
-  const hosts = [
-    { name: "near", age: 1, processes: [process("RUNNING"), idle, lost, process("STOPPED"), process("FATAL")] },
-    { name: "far", age: 7, processes: [process("FATAL")] },
-  ];
-  const found = alarmsOf(site([], { hosts, scheduler: { alive: false, age: null } }));
-  expect(found.map((alarm) => alarm.key)).toEqual(["scheduler", "lost", "p:STOPPED", "p:FATAL", "far"]);
-  expect(alarmsOf(site([]))).toEqual([]);
 });
 
 test("a machine does what the running leaves with its name do", () => {

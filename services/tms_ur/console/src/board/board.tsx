@@ -8,7 +8,6 @@ import { get } from "../server";
 import { useList } from "../use_list";
 import { ActiveRuns } from "./active_runs";
 import { AlarmList } from "./alarm_list";
-import { alarmsOf } from "./alarms";
 import { Interrupted } from "./interrupted";
 import { lightOf, markOf } from "./light";
 import { MachineCard } from "./machine_card";
@@ -26,7 +25,7 @@ export function Board() {
   if (state === null) {
     return <Tasks />;
   }
-  const alarms = alarmsOf(state);
+  const { alarms = [] } = state;
   const runs = interrupted.list ?? [];
   const open = runs.length + (interrupted.error === null ? 0 : 1); // what is not known needs a look, too
   return (

@@ -30,7 +30,7 @@ export function lightOf(state: State, link: boolean | null, needed: number): Sho
     return { light: "stopped", machines: named(stopped) };
   }
   const waiting = state.machines.filter(waits);
-  if (waiting.length > 0 || needed > 0 || state.questions.length > 0) {
+  if (waiting.length > 0 || needed > 0 || state.questions.length > 0 || !state.scheduler.alive) {
     return { light: "attention", machines: named(waiting) };
   }
   const moving = state.machines.filter((machine) => machine.state === "moving");

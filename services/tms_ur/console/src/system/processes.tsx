@@ -4,13 +4,12 @@ import { duration } from "old/dom.js";
 import { Fragment, useState } from "react";
 import { useTranslation } from "react-i18next";
 import { Badge } from "../badge";
-import { isDown, type Process } from "../board/alarms";
 import { Command } from "../command";
-import type { State } from "../models";
+import type { Process, State } from "../models";
 import { Said } from "../said";
 import { Table } from "../table";
 import { ProcessLog } from "./log";
-import { type Row, rowsOf } from "./rows";
+import { isDown, type Row, rowsOf } from "./rows";
 
 const HEADS = 8; // columns
 const QUIET = new Set(["RUNNING", "STOPPED"]); // states of which supervisord only tells the time

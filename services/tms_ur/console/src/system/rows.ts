@@ -1,6 +1,12 @@
 // The processes of the site in the order in which one looks for trouble.
-import { isDown, type Process } from "../board/alarms";
-import type { State } from "../models";
+import type { Process, State } from "../models";
+
+const UP = new Set(["RUNNING", "STARTING"]); // states of supervisord
+const GIVEN_UP = new Set(["FATAL", "BACKOFF"]);
+
+/** Whether a process that should run does not: an essential one always should, one on demand once it was asked for. */
+export const isDown = ({ state, on_demand }: Process) =>
+  state !== "UNKNOWN" && (on_demand ? GIVEN_UP.has(state) : !UP.has(state));
 
 export interface Row {
   host: string;

@@ -1,7 +1,6 @@
 // System: what is wrong, processes of every PC with their logs, and the audit of commands.
 import { useTranslation } from "react-i18next";
 import { AlarmList } from "../board/alarm_list";
-import { alarmsOf } from "../board/alarms";
 import { useLive } from "../live";
 import { Audit } from "./audit";
 import { Processes } from "./processes";
@@ -14,7 +13,7 @@ const open = (process: string) => {
 export default function SystemPage({ rest }: { rest: string }) {
   const { t } = useTranslation();
   const { state } = useLive();
-  const alarms = state === null ? [] : alarmsOf(state);
+  const alarms = state?.alarms ?? [];
   return (
     <>
       <h2>{t("alarms")}</h2>

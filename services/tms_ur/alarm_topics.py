@@ -1,0 +1,29 @@
+"""What only alarms need of the site: topics of host agents and of tms:sp; and rules judged while no console is open."""
+
+from collections.abc import Iterable
+from functools import partial
+
+from std_msgs.msg import Bool
+from tms_msg_sp.msg import InputStates
+
+from tms_machine.border import standby
+from tms_ros.node import Ros
+from tms_ur.board import Board
+
+PERIOD = 1.0  # s: for how long a rule has held is known to that
+
+
+def listen(ros: Ros, machines: Iterable[str], board: Board) -> None:
+    """Keep the board up to date with it."""
+    for name in machines:
+        ros.subscribe(Bool, standby(name), partial(_on_standby, board, name), latched=True)
+    ros.subscribe(InputStates, "/tms/sp/inputs", partial(_on_inputs, board), latched=True)
+    ros.poll_in_thread(PERIOD, board.snapshot, "alarms")
+
+
+def _on_standby(board: Board, machine: str, message: Bool) -> None:
+    board.put_standing_in(machine, message.data)
+
+
+def _on_inputs(board: Board, message: InputStates) -> None:
+    board.put_inputs({one.name: one.state for one in message.inputs})
