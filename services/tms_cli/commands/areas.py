@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from tms_cli import area_sets, session
-from tms_cli.reasons import AreaFileThere, NameTaken
+from tms_cli import area_sets, new_file, session
+from tms_cli.reasons import AreaFileThere
 from tms_cli.words import Group, padded, say
 from tms_reason.errors import TmsError
 from tms_ur import gateway_areas
@@ -179,11 +179,7 @@ def export(file: Path, vda5050: bool, as_json: bool) -> None:
     found = area_sets.configured(site)
     now = utc_now().strftime("%Y-%m-%dT%H:%M:%S.%f")[:-3] + "Z"
     told = zone_set(found, site.name, now) if vda5050 else written(found)
-    try:
-        with file.open("x", encoding="utf-8") as new:
-            new.write(json.dumps(told, ensure_ascii=False, indent=1) + "\n")
-    except OSError as error:
-        raise TmsError(NameTaken(str(file), str(error.strerror)), "NO_FILE") from error
+    new_file.write(file, f"{json.dumps(told, ensure_ascii=False, indent=1)}\n".encode())
     if as_json:
         session.show_json({"file": str(file), "id": found.id})
     else:

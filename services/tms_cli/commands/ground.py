@@ -5,12 +5,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from tms_cli import ground_options, grounds, session
+from tms_cli import ground_options, grounds, new_file, session
 from tms_cli.ground_options import Finite, Level, Polygon, Slope
 from tms_cli.open_store import opened
-from tms_cli.reasons import NameTaken
 from tms_cli.words import Group, say
-from tms_reason.errors import TmsError
 
 if TYPE_CHECKING:
     from tms_soil.surface import Bounds, Point
@@ -219,10 +217,8 @@ def export(snapshot: str, file: Path, as_json: bool) -> None:
         raise click.UsageError(say("the file's name must end with .asc or .tif"))
     with opened() as db:
         found, ground = grounds.one(db, snapshot)
-    try:
+    with new_file.written(file):
         grounds.write(file, ground)
-    except OSError as error:
-        raise TmsError(NameTaken(str(file), str(error.strerror)), "NO_FILE") from error
     if as_json:
         session.show_json({**grounds.as_dict(found), "file": str(file)})
     else:
@@ -273,9 +269,5 @@ def diff(before: str, after: str, picture: Path | None, inside: "tuple[Point, ..
     mask = grounds.mask(ground, inside)
     change = ground_map.change(old, ground, mask)
     if picture is not None:
-        try:
-            with picture.open("xb") as new:
-                new.write(map_picture.picture(ground, change))
-        except OSError as error:
-            raise TmsError(NameTaken(str(picture), str(error.strerror)), "NO_FILE") from error
+        new_file.write(picture, map_picture.picture(ground, change))
     grounds.show_volumes(volumes.between(old, ground, mask), ground_map.extremes(ground, change), as_json=as_json)

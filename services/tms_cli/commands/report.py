@@ -6,12 +6,10 @@ from typing import TYPE_CHECKING
 
 import click
 
-from tms_cli import session, words
+from tms_cli import new_file, session, words
 from tms_cli.days import Day
 from tms_cli.open_store import opened
-from tms_cli.reasons import NameTaken
 from tms_cli.words import say
-from tms_reason.errors import TmsError
 
 if TYPE_CHECKING:
     from tms_db.store import Db
@@ -48,11 +46,7 @@ def command(day: date, output: Path | None, language: str | None, overwrite: boo
     with opened() as db:
         facts = _facts(db, day, language or words.language())
     data = (page if file.suffix.lower() == ".html" else sheet).render(facts)
-    try:
-        with file.open("wb" if overwrite else "xb") as new:
-            new.write(data)
-    except OSError as error:
-        raise TmsError(NameTaken(str(file), str(error.strerror)), "NO_FILE") from error
+    new_file.write(file, data, overwrite)
     if as_json:
         from tms_cli.commands.work import as_dict
 

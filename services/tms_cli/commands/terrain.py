@@ -5,11 +5,9 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from tms_cli import session
+from tms_cli import new_file, session
 from tms_cli.open_store import opened
-from tms_cli.reasons import NameTaken
 from tms_cli.words import Group
-from tms_reason.errors import TmsError
 
 if TYPE_CHECKING:
     from tms_db.terrain import TerrainFile
@@ -115,11 +113,7 @@ def get(name: str, file: Path, as_json: bool) -> None:
         if found is None:
             raise missing(name)
         data = terrain.read(found)
-    try:
-        with file.open("xb") as new:
-            new.write(data)
-    except OSError as error:
-        raise TmsError(NameTaken(str(file), str(error.strerror)), "NO_FILE") from error
+    new_file.write(file, data)
     if as_json:
         session.show_json({**_as_dict(found), "file": str(file)})
     else:

@@ -4,10 +4,8 @@ from pathlib import Path
 
 import click
 
-from tms_cli import session
-from tms_cli.reasons import NameTaken
+from tms_cli import new_file, session
 from tms_cli.words import say
-from tms_reason.errors import TmsError
 
 
 @click.command()
@@ -34,11 +32,7 @@ def command(machine: str, output: Path | None, overwrite: bool, as_json: bool) -
     site = session.site()
     file = output or Path(f"{machine}_description.zip")
     data = package(machine, site.model_of(machine), site.border(machine))
-    try:
-        with file.open("wb" if overwrite else "xb") as new:
-            new.write(data)
-    except OSError as error:
-        raise TmsError(NameTaken(str(file), str(error.strerror)), "NO_FILE") from error
+    new_file.write(file, data, overwrite)
     if as_json:
         session.show_json({"file": str(file), "machine": machine, "bytes": len(data)})
     else:
