@@ -31,7 +31,10 @@ SIZE = ViewportSize(width=1280, height=800)  # px
 SIZES = {  # px
     "phone": ViewportSize(width=390, height=844), "desk": SIZE, "wall": ViewportSize(width=1920, height=1080),
 }  # fmt: skip
-MORE = ("map/3d", "tasks/{task}", "editor/{task}")  # places that the navigation has no link to
+MORE = ("map/3d", "editor/{task}", "components")  # places that the navigation has no link to
+# Pages without navigation: the address, and what shows that it is there.
+ALONE = {"panel": ("panel.html?task={task}", "#state:not(:empty)"), "login": ("#login", "#login_name")}
+NOBODY = {"name": None, "role": None, "login": True}  # a session before the login: the demo's console asks for none
 LARGEST = 150_000  # bytes of a picture
 LIMIT = 60.0  # s for whatever must happen at all
 RUN_LIMIT = 600.0  # s for the run to end
@@ -49,6 +52,7 @@ SHOWN = {
     "tasks": ("#list_stored tr",),
     "editor": ("#page [data-path]",),
     "work": ("#list_work tr, #none_work",),
+    "components": ("#page [data-path]",),
 }
 
 
@@ -116,7 +120,25 @@ def take_all(browser: Browser, url: str, past: str, task: int) -> None:
     for place in [*links, *(one.format(task=task) for one in MORE)]:
         for (ending, size), page in pages.items():
             take(page, url, f"history/{past}" if place == "history" else place, ending, size)
+    for (ending, size), page in pages.items():
+        take_alone(page, url, task, f"{size}{ending}")
     wait_for_end(english, url)
+
+
+def take_alone(page: Page, url: str, task: int, ending: str) -> None:
+    """The pages of `ALONE`; the page can show the others again afterwards."""
+    for name, (place, shown) in ALONE.items():
+        if name == "login":
+            page.route("**/api/session", lambda route: route.fulfill(json=NOBODY))
+        page.goto("about:blank")  # else another place of the same page would not load anew
+        page.goto(f"{url}/{place.format(task=task)}")
+        try:
+            page.wait_for_selector(shown)
+        except TimeoutError as error:
+            raise NoPictures(f"{name} shows no {shown} within {LIMIT:.0f} s") from error
+        keep(page.screenshot(full_page=True), ALL / f"{name}.{ending}.png")
+    page.unroute("**/api/session")
+    page.goto("about:blank")
 
 
 def take(page: Page, url: str, place: str, ending: str, size: str) -> None:
@@ -125,7 +147,7 @@ def take(page: Page, url: str, place: str, ending: str, size: str) -> None:
     name = place.partition("/")[0] if place.startswith("history") else place.replace("/", "_")
     page.evaluate("scrollTo(0, 0)")  # else the header, which stays in sight, is in the middle of the picture
     keep(page.screenshot(full_page=True), ALL / f"{name}.{size}{ending}.png")
-    if size == "desk" and "_" not in name and (not ending or name in JAPANESE):
+    if size == "desk" and place not in MORE and "_" not in name and (not ending or name in JAPANESE):
         keep(page.screenshot(), PICTURES / f"{name}{ending}.png")
 
 

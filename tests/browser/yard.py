@@ -90,13 +90,13 @@ class Yard(FakeSiteClient):
 
 
 @contextmanager
-def serving(yard: Yard, folder: Path) -> Iterator[str]:
-    """Serve its console; gives the address."""
+def serving(yard: Yard, folder: Path, users: Path | None = None) -> Iterator[str]:
+    """Serve its console; gives the address. With a file of users it asks for a login."""
     file = folder / "site.yaml"
     machines = {name: {"model": model} for name, model in yard.models.items()}
     file.write_text(yaml.safe_dump(site_data(42, 20000, machines=machines, **yard.site)))
     listener = Listener(fileno=socket.create_server(("127.0.0.1", 0)).detach())
-    application = create_app(yard, FakeAudit(), load_site(str(file)), Access(None))  # type: ignore[arg-type]
+    application = create_app(yard, FakeAudit(), load_site(str(file)), Access(users))  # type: ignore[arg-type]
     server = Server(application, listener, None)
     try:
         yield f"http://127.0.0.1:{listener.getsockname()[1]}"

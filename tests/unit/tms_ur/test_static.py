@@ -150,6 +150,24 @@ def test_the_built_page_runs_no_inline_script_and_asks_nobody_else() -> None:
         assert not re.search(r"https?://|\bstyle=|<style|<script(?![^>]*src)|\son\w+=|data:", text), file
 
 
+@pytest.mark.parametrize("path", ["/", "/panel.html", "/dom.js", "/api/session", "/nowhere"])
+def test_browsers_run_only_scripts_of_the_site(path: str) -> None:
+    """Neither those that are written into a page, nor those that are made from text, nor those of another place."""
+    policy = Client(app(FakeSiteClient())).get(path).headers["content-security-policy"]
+    rules = dict(rule.strip().split(" ", 1) for rule in policy.split(";"))
+    assert rules.get("script-src", rules["default-src"]) == "'self'"
+    assert rules.get("connect-src", rules["default-src"]) == "'self'"
+    assert rules["base-uri"] == rules["object-src"] == rules["form-action"] == "'none'"
+
+
+def test_the_lock_file_of_the_console_names_no_registry() -> None:
+    """It is made behind other registries than the site's, whose npm has its own. Each package has its digest."""
+    lock = json.loads((SOURCE.parent / "package-lock.json").read_text(encoding="utf-8"))
+    packages = {name: facts for name, facts in lock["packages"].items() if name}
+    assert len(packages) > 50
+    assert [name for name, facts in packages.items() if "resolved" in facts or "integrity" not in facts] == []
+
+
 def test_files_are_sent_compressed() -> None:
     client = Client(app(FakeSiteClient()))
     file = max(BUILT.glob("assets/index-*.js"), key=lambda path: path.stat().st_size)
