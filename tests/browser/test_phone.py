@@ -14,10 +14,11 @@ from yard import Yard, serving
 pytestmark = pytest.mark.browser
 WIDTH = 390  # px
 TARGET = 44  # px
+RUNS = 12  # more than a screen shows
 
 
 class Full(Yard):
-    """Two versions of a task, and a run with a long reason."""
+    """Two versions of a task, and many runs."""
 
     def tasks(self) -> list[Task]:
         facts = {"model_name": "zx200", "added_at": NOON}
@@ -25,10 +26,9 @@ class Full(Yard):
         return [Task(id=number, description=name, **facts) for number, name in enumerate(names, 4)]
 
     def runs(self, limit: int) -> list[Run]:
-        return [
-            run.model_copy(update={"run_id": "r-1", "machines": ["zx200", "ic120"]})
-            for run in super(Yard, self).runs(limit)
-        ]
+        (run,) = super(Yard, self).runs(limit)
+        machines = ["zx200", "ic120"]
+        return [run.model_copy(update={"run_id": f"r-{number}", "machines": machines}) for number in range(1, RUNS + 1)]
 
 
 @pytest.fixture
@@ -78,7 +78,7 @@ def test_a_run_that_is_shown_is_gone_to(page: Page, address: str) -> None:
     """The list of runs is longer than the screen."""
     page.set_viewport_size({"width": WIDTH, "height": 500})
     page.goto(f"{address}/#history")
-    show = page.get_by_role("button", name="Show run r-1")
+    show = page.get_by_role("button", name="Show run r-1", exact=True)
     expect(page.locator("#past_title")).to_have_count(0)
     show.click()
     expect(page.locator("#past_title")).to_be_in_viewport(ratio=1)

@@ -195,7 +195,10 @@ def test_3d_the_panel_and_the_login_are_accessible(page: Page, address: str, yar
 
 
 def test_no_request_leaves_the_site(page: Page, address: str, yard: Versions) -> None:
+    """None is even tried: the policy of the site would refuse it, and the browser would say so."""
     asked: set[str] = set()
+    refused: list[str] = []
+    page.on("console", lambda said: refused.append(said.text) if "Content Security Policy" in said.text else None)
     page.on("request", lambda request: asked.add(request.url))
     page.on("websocket", lambda socket: asked.add(socket.url))
     yard.board.put_runs([RUN])
@@ -210,3 +213,4 @@ def test_no_request_leaves_the_site(page: Page, address: str, yard: Versions) ->
     own = re.compile(rf"^(?:{re.escape(address)}/|ws{re.escape(address[4:])}/|blob:{re.escape(address)}/|about:|data:)")
     assert len(asked) > len(PLACES)
     assert [url for url in asked if not own.match(url)] == []
+    assert refused == []
