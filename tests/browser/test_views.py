@@ -214,3 +214,21 @@ def test_no_request_leaves_the_site(page: Page, address: str, yard: Versions) ->
     assert len(asked) > len(PLACES)
     assert [url for url in asked if not own.match(url)] == []
     assert refused == []
+
+
+def test_a_page_that_does_not_load_leaves_the_stop_in_reach(page: Page, address: str) -> None:
+    """As where the server goes while one changes the page, or has another release since."""
+    files = "**/assets/*_page-*.js"
+    page.goto(f"{address}/#board")
+    expect(page.locator("#light")).to_be_visible()
+    page.route(files, lambda route: route.abort())
+    page.get_by_role("link", name="Map", exact=True).click()
+    expect(page.get_by_role("alert").get_by_text("This page cannot be shown")).to_be_visible()
+    expect(page.get_by_role("button", name="Software stop", exact=True)).to_be_in_viewport(ratio=1)
+    assert Axe().run(page).response["violations"] == []
+    page.get_by_role("link", name="Board", exact=True).click()
+    expect(page.locator("#light")).to_be_visible()
+    page.get_by_role("link", name="Map", exact=True).click()
+    page.unroute(files)
+    page.get_by_role("button", name="Load it again").click()
+    expect(page.locator("#map_box [data-machine=ic120]")).to_be_visible()

@@ -5,6 +5,7 @@ import { PAGE_NAMES } from "old/words.js";
 import { type ComponentType, lazy, Suspense, useEffect, useSyncExternalStore } from "react";
 import { useTranslation } from "react-i18next";
 import { Board } from "./board/board";
+import { Fault } from "./fault";
 import { PaperHead } from "./print";
 
 type Page = ComponentType<{ rest: string }>; // `rest`: what stands behind its name in the address
@@ -42,9 +43,11 @@ export function Pages() {
       <main id="main" tabIndex={-1}>
         <PaperHead name={name} />
         <div id="page" data-page={name}>
-          <Suspense>
-            <Chosen rest={rest.join("/")} />
-          </Suspense>
+          <Fault key={name}>
+            <Suspense>
+              <Chosen rest={rest.join("/")} />
+            </Suspense>
+          </Fault>
         </div>
       </main>
     </>
