@@ -3,7 +3,7 @@ import { useEffect, useState } from "react";
 import type { Task } from "../models";
 import { get } from "../server";
 
-/** Until the server has told them, the one of the database. */
+/** The one of the database until the server has told them, and where none of them is at this site. */
 export function Moved({ task: { id, model_name } }: { task: Task }) {
   const [machines, setMachines] = useState<string[] | null>(null);
   useEffect(() => {
@@ -16,5 +16,5 @@ export function Moved({ task: { id, model_name } }: { task: Task }) {
       left = true;
     };
   }, [id]);
-  return machines?.join(", ") ?? model_name;
+  return machines?.join(", ") || model_name;
 }
