@@ -9,12 +9,14 @@ from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import Page, expect
 
 from tms_config.clock import utc_now
+from tms_db.reasons import NoStore, StoreDown
 from tms_decision.reasons import ProcessAway, SoftwareStop
-from tms_ur.models import Host, LastStop, Load, Machine, Process, Run
+from tms_reason.errors import DbError
+from tms_ur.models import Event, Host, LastStop, Load, Machine, Process, Run
 from tms_ur.place_models import PlaceRequest, SharedPlace, SharedPlaces
 from tms_ur.reason_view import of_line, view
 from unit.tms_ur.fakes import NOON
-from yard import RUN, Yard, serving
+from yard import RUN, Yard, serving, shape
 
 pytestmark = pytest.mark.browser
 XML = "<root><Sequence><L model_name='ic120'/><L model_name='zx200'/></Sequence></root>"
@@ -27,6 +29,8 @@ class Waiting(Yard):
         return super().task(task_id).model_copy(update={"xml": XML})
 
     def runs(self, limit: int) -> list[Run]:
+        if self.error is not None:
+            raise self.error
         facts = {"run_id": "r-9", "task_id": 4, "description": "", "machines": ["zx200"], "started_at": NOON}
         open_ = not any(call[0] in ("start_run", "abandon_run") for call in self.calls)
         return [Run(**facts, state="interrupted", reason=of_line("lost"), ended_at=NOON)] if open_ else []
@@ -191,3 +195,56 @@ def test_a_run_that_waits_for_its_process_moves_nothing_below_it(page: Page, add
     yard.board.put_runs([RUN.model_copy(update={"reason": reason, "reason_since": utc_now()})])
     expect(page.locator("#list_active")).to_contain_text("is not there")
     assert tasks.bounding_box() == place
+
+
+def test_what_is_not_known_while_the_database_is_away_is_said(page: Page, address: str, yard: Waiting) -> None:
+    """No interrupted run is shown then: that must not look as if there were none."""
+    yard.error = DbError(StoreDown(NoStore()))
+    page.goto(f"{address}/#board")
+    problem = page.locator("#interrupted_problem")
+    expect(problem).to_contain_text("Whether runs were interrupted is not known: the store does not answer")
+    expect(problem.get_by_role("link", name="Start it, or the MongoDB of the site")).to_be_visible()
+    expect(page.locator("#light")).to_contain_text("Needs a look")
+    page.locator("#language").click()
+    expect(problem).to_contain_text("中断された実行があるか分かりません: ストアが応答しません")
+    yard.error = None
+    expect(page.locator("#list_interrupted li")).to_be_visible()  # it asks again by itself
+    expect(problem).to_be_empty()
+
+
+def test_a_machine_is_given_back_from_its_card(page: Page, address: str, yard: Waiting) -> None:
+    yard.board.put_machine(Machine(name="zx200", state="standing", joint_age=0.1, by_hand="mina"))
+    page.goto(f"{address}/#board")
+    card = page.locator("[data-machine=zx200]")
+    expect(card).to_contain_text("mina drives by hand")
+    card.get_by_role("button", name="Give back zx200").click()
+    expect(page.locator("#dialog_text")).to_contain_text("Have you made sure that nobody drives it")
+    page.get_by_role("button", name="Back", exact=True).click()
+    assert not any(call[0] == "give_back" for call in yard.calls)
+    card.get_by_role("button", name="Give back zx200").click()
+    page.get_by_role("button", name="Do it").click()
+    expect(page.locator("#message")).to_contain_text("zx200 is given back. zx200: seen to stand after 0.4 s")
+    assert [call[1] for call in yard.calls if call[0] == "give_back"] == ["zx200"]
+
+
+def test_a_wait_is_told_with_its_own_begin_and_what_helps(
+    page: Page, address: str, yard: Waiting, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """On the card, and in the details of the leaf that waits."""
+    yard.journals = {"r-1": [Event(number=1, stamp=NOON, kind="tree", node="", text="", values={**shape(1, 2)})]}
+    reason = view(ProcessAway("zx200:subtask_zx200_change_pose"))
+    waiting = RUN.model_copy(update={"reason": reason, "leaf": "0.0.1", "nodes": "1101"})
+    with monkeypatch.context() as then:
+        then.setattr("tms_ur.board.utc_now", lambda: NOON)
+        yard.board.put_runs([waiting])
+    yard.board.put_runs([waiting])
+    page.goto(f"{address}/#board")
+    card = page.locator("[data-machine=zx200]")
+    expect(card).to_contain_text("is not there (since 31 Jan")  # and not since the machine stands
+    link = card.get_by_role("link", name="Read the log of the process")
+    expect(link).to_have_attribute("href", "#system/zx200%3Asubtask_zx200_change_pose")
+    page.goto(f"{address}/#tree")
+    page.locator("[data-path='0.0.1']").click()
+    waits = page.locator("#node_waits")
+    expect(waits).to_contain_text("is not there (since 31 Jan")
+    expect(waits.get_by_role("link")).to_be_visible()

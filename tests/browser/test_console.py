@@ -273,6 +273,7 @@ def test_the_panel_starts_and_stops(page: Page, address: str, idle: Mesh) -> Non
     page.goto(idle.tms("panel", "--task", str(SWINGS), "--url").stdout.strip())
     expect(page.locator("#state")).to_have_text("Ready to start.")
     page.locator("#start").click()
+    page.locator("#dialog_yes").click()
     expect(page.locator("#state")).to_contain_text("Running")
     expect(page.locator("#start")).to_be_disabled()
     page.locator("#stop").click()

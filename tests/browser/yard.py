@@ -91,7 +91,7 @@ class Yard(FakeSiteClient):
 
 @contextmanager
 def serving(yard: Yard, folder: Path, users: Path | None = None) -> Iterator[str]:
-    """Serve its console; gives the address. With a file of users it asks for a login."""
+    """Serve its console; gives the address. `users`: a file of those who log in, else everybody is an admin."""
     file = folder / "site.yaml"
     machines = {name: {"model": model} for name, model in yard.models.items()}
     file.write_text(yaml.safe_dump(site_data(42, 20000, machines=machines, **yard.site)))
