@@ -212,6 +212,16 @@ def test_what_is_not_known_while_the_database_is_away_is_said(page: Page, addres
     expect(problem).to_be_empty()
 
 
+def test_a_tree_that_cannot_be_read_is_told(page: Page, address: str, yard: Waiting) -> None:
+    yard.error = DbError(StoreDown(NoStore()))
+    yard.board.put_runs([RUN])
+    page.goto(f"{address}/#tree")
+    expect(page.locator("#tree_problem")).to_contain_text("The tree cannot be read: the store does not answer")
+    yard.error = None
+    expect(page.locator("[data-path='0']")).to_be_visible()
+    expect(page.locator("#tree_problem")).to_have_count(0)
+
+
 def test_a_machine_is_given_back_from_its_card(page: Page, address: str, yard: Waiting) -> None:
     yard.board.put_machine(Machine(name="zx200", state="standing", joint_age=0.1, by_hand="mina"))
     page.goto(f"{address}/#board")

@@ -113,7 +113,7 @@ def test_login_roles_and_throttling(secure_page: Page, console: str) -> None:
     login(page, "viewer", PASSWORD)
     expect(page.locator("#who")).to_have_text("viewer (viewer)")
     expect(page.get_by_role("button", name="Software stop of zx200")).to_be_visible()
-    expect(page.locator("button.go")).to_have_count(0)
+    expect(page.locator("main button.go")).to_have_count(0)
     refused = page.evaluate(
         "fetch('/api/runs', {method: 'POST', headers: {'Content-Type': 'application/json'}, "
         "body: JSON.stringify({task_id: 1})}).then(answer => answer.json())"

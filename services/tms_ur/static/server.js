@@ -125,19 +125,23 @@ export function watch(onState, onLink) {
 
 const trees = new Map();
 
+/** Why the tree of a run could not be read; null where it is just not written yet. */
+export const treeProblem = (runId) => trees.get(runId)?.problem ?? null;
+
 /** The shape of a run's tree; requested once, and again after a second as long as the history has none. */
 export function treeOf(runId) {
   const known = trees.get(runId);
   if (known !== undefined && (known.tree !== null || performance.now() - known.asked < 1000)) {
     return known.tree;
   }
-  trees.set(runId, { tree: null, asked: performance.now() });
+  const asked = performance.now();
+  trees.set(runId, { tree: null, asked, problem: known?.problem ?? null });
   if (trees.size > MAX_TREES) {
     trees.delete(trees.keys().next().value); // removes the oldest
   }
   ask(`/api/runs/${encodeURIComponent(runId)}/tree`).then(
     (tree) => trees.set(runId, { tree }),
-    () => {}, // not written yet, or the database is away: the next state asks again
+    (problem) => trees.set(runId, { tree: null, asked, problem: problem.reason?.code === "NO_TREE" ? null : problem }),
   );
   return null;
 }

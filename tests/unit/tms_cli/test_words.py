@@ -17,7 +17,9 @@ from catalogues import catalogue
 from tms_cli import words
 from tms_cli.main import tms as group
 from tms_config.processes import PURPOSES
+from tms_decision.reasons import StillPressed
 from tms_reason import texts
+from tms_ts.reasons import NoRecord
 from tms_ts.run_states import STATES
 
 SERVICES = Path(words.__file__).parents[1]
@@ -187,3 +189,10 @@ def test_an_error_and_its_remedy_and_no_word_of_it_in_json(monkeypatch: pytest.M
 def test_japanese_lines_are_folded_by_columns() -> None:
     assert words._folded("機械を止める。動く", 12) == "機械を止める。\n動く"
     assert words.padded("成功", 6) == "成功  "
+
+
+def test_a_finding_has_the_command_that_helps_and_no_advice_without_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("LC_ALL", "C.UTF-8")
+    missing = "no record zx200/gone; Add the record: `tms param set zx200/gone --create FIELD=VALUE`"
+    assert words.with_command(NoRecord("zx200/gone")) == missing
+    assert words.with_command(StillPressed()) == texts.text(StillPressed(), "en")

@@ -25,6 +25,7 @@ declare module "old/server.js" {
     onLink: (there: boolean | null) => void,
   ): void;
   export function treeOf(run: string): import("./models").Tree | null;
+  export function treeProblem(run: string): Error | null;
   export function siteNow(): number;
 }
 

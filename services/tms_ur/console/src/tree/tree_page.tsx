@@ -1,12 +1,13 @@
 // The live tree of a run, and one sentence with the reason of its present state.
 
-import { siteNow, treeOf } from "old/server.js";
+import { siteNow, treeOf, treeProblem } from "old/server.js";
 import { useMemo, useRef, useState } from "react";
 import { useTranslation } from "react-i18next";
 import { Badge } from "../badge";
 import { useJournal } from "../journal/use_journal";
 import { useLive } from "../live";
 import type { ActiveRun, State, Tree } from "../models";
+import { Problem } from "../problem";
 import { Said } from "../said";
 import { said, timeOfDay } from "../texts";
 import { TreeFlow } from "./flow";
@@ -57,6 +58,7 @@ export default function TreePage({ rest }: { rest: string }) {
         <p id="no_tree">{t(alive ? "no_tree" : "scheduler_silent")}</p>
       )}
       {state && run && <Why run={run} state={state} />}
+      {run && tree === null && <Problem id="tree_problem" what={t("no_shape")} error={treeProblem(run.run_id)} />}
       {shown.current && (
         <TreeFlow key={shown.current.id} {...shown.current} last={last} facts={facts} timing={timing} />
       )}
