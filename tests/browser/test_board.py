@@ -258,3 +258,21 @@ def test_a_wait_is_told_with_its_own_begin_and_what_helps(
     waits = page.locator("#node_waits")
     expect(waits).to_contain_text("is not there (since 31 Jan")
     expect(waits.get_by_role("link")).to_be_visible()
+    yard.error = DbError(StoreDown(NoStore()))
+    expect(page.locator("#node_record")).to_contain_text("Record R0.0.1: the store does not answer")
+    expect(page.locator("#node_blackboard")).to_contain_text("the store does not answer")
+
+
+def test_the_journal_of_a_run_says_what_helps(page: Page, address: str, yard: Waiting) -> None:
+    """In its table, and at each try of a node that has failed."""
+    why = view(ProcessAway("tms:db"))
+    tree = Event(number=1, stamp=NOON, kind="tree", node="", text="", values={**shape(1, 2)})
+    states = [("IDLE -> RUNNING", None), ("RUNNING -> FAILURE", why)]
+    moves = [
+        Event(number=2 + index, stamp=NOON, kind="node", node="0.0.1", text=f"dig {text}", reason=reason)
+        for index, (text, reason) in enumerate(states)
+    ]
+    yard.journals = {"r-9": [tree, *moves]}
+    page.goto(f"{address}/#history/r-9")
+    link = page.locator("#list_events").get_by_role("link", name="Read the log of the process")
+    expect(link).to_have_attribute("href", "#system/tms%3Adb")

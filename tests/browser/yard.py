@@ -81,6 +81,7 @@ class Yard(FakeSiteClient):
         return self.journals.get(run_id, [])[after : after + limit]
 
     def parameters(self, model_name: str) -> list[Record]:
+        self._called("parameters", model_name)
         written = utc_now() - timedelta(seconds=30)
         facts = {"type": "static", "description": "", "source": "cli", "updated_at": written, "values": {"d": 1.0}}
         return [Record(model_name="zx200", record_name="pose", **facts)]

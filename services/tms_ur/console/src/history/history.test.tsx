@@ -1,7 +1,9 @@
 import { configure, fireEvent, render, screen, waitFor } from "@testing-library/react";
 import { expect, test, vi } from "vitest";
 import { journalOf } from "../journal/journal";
-import type { Event } from "../models";
+import type { Event, ReasonView } from "../models";
+import { Attempts } from "../tree/attempts";
+import type { TreeNode } from "../tree/shape";
 import { Cursor } from "./cursor";
 import { lanesOf } from "./lanes";
 import { rowsOf } from "./rows";
@@ -79,4 +81,24 @@ test("the cursor jumps to stops, links to its moment, and plays to the end", asy
   await waitFor(() => expect(onTime).toHaveBeenCalledWith(BEGIN + 5000)); // and not beyond it
   rerender(<Cursor run="r-1" journal={JOURNAL} end={BEGIN + 5000} time={BEGIN + 5000} onTime={onTime} />);
   expect(screen.getByRole("button", { name: /Play/ }).getAttribute("aria-pressed")).toBe("false");
+});
+
+test("a try that failed says why and what helps", () => {
+  const both = (text: string) => ({ en: text, ja: text });
+  const reason: ReasonView = {
+    code: "X",
+    args: {},
+    text: both("it is not there"),
+    details: both(""),
+    action: { name: "logs", command: "", args: { process: "tms:db" }, text: both("Read its log") },
+  };
+  const events = [
+    event(1, "tree", "", { values: { paths: ["0"] } }),
+    event(2, "node", "dig IDLE -> RUNNING", { node: "0" }),
+    event(3, "node", "dig RUNNING -> FAILURE", { node: "0", reason }),
+  ];
+  const node = { index: 0 } as TreeNode;
+  render(<Attempts journal={journalOf(events, false)} count={3} now={BEGIN} node={node} />);
+  expect(screen.getByText("it is not there")).toBeTruthy();
+  expect(screen.getByRole("link", { name: "Read its log" }).getAttribute("href")).toBe("#system/tms%3Adb");
 });
