@@ -21,7 +21,7 @@ from starlette.middleware.gzip import GZipMiddleware
 from tms_config.config import Site
 from tms_reason.errors import TmsError
 from tms_reason.reason import Reason
-from tms_ur import bodies, commands, editor, reading, recordings, sessions, work
+from tms_ur import bodies, commands, editor, logs, reading, recordings, sessions, work
 from tms_ur.access import Access
 from tms_ur.hashing import Hashing
 from tms_ur.problems import problem, problems
@@ -54,6 +54,7 @@ def create_app(client: "SiteClient", audit: "Audit", site: Site, access: Access)
     bodies.add(app, site)
     editor.add(app, client, site)
     recordings.add(app, client, site)
+    logs.add(app, client, site)
     work.add(app, client, site)
     commands.add(app, client, audit, site)
     sessions.add(app, access, hashing, audit, secure=site.file.console.tls is not None)

@@ -50,6 +50,8 @@ class NotUnicode(Reason, text="a string is valid Unicode without NUL"): pass
 
 # the site
 class UnknownProcess(Reason, text="no PC of the site has a process '{process}'", action=PROCESSES): process: str
+class NoLogAsked(Reason, text="say of which machine or run: machine, run_id"): pass
+class RunNotFound(Reason, text="the history holds no run {run}", action=RUNS): run: str
 class NoTree(Reason, text="the journal of run {run} holds no tree: it was refused, or is an old one",
     action=RUNS): run: str
 class JournalCut(Reason, text="cut after {count} events",

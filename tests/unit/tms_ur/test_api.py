@@ -791,7 +791,7 @@ def test_every_endpoint_is_in_the_document(client: Client) -> None:
         "/api/templates", "/api/areas", "/api/areas/check", "/api/areas/enable", "/api/ground", "/api/work",
         "/api/work/report", "/api/machines/{name}/urdf",
         "/api/places", "/api/palette", "/api/templates/{name}", "/api/places/{name}/revoke",
-        "/api/recordings", "/api/recordings/{run_id}/export",
+        "/api/recordings", "/api/recordings/{run_id}/export", "/api/logs",
     }  # fmt: skip
     assert {method for path in document["paths"].values() for method in path} == {
         "get",

@@ -502,6 +502,23 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/logs": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** Log lines of the processes of a machine, or of all of a run, by their times */
+        get: operations["logs_api_logs_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/work": {
         parameters: {
             query?: never;
@@ -1336,6 +1353,33 @@ export interface components {
             text: string;
         };
         /**
+         * LogLine
+         * @description A line of a log.
+         */
+        LogLine: {
+            /**
+             * Time
+             * Format: date-time
+             * @description by the clock of the process's PC
+             */
+            time: string;
+            /**
+             * Process
+             * @description group:name
+             */
+            process: string;
+            /**
+             * Level
+             * @description INFO, WARNING, ERROR, ...; empty: the line does not say
+             */
+            level: string;
+            /**
+             * Text
+             * @description the line without its time, level and process
+             */
+            text: string;
+        };
+        /**
          * Login
          * @description Who wants a session.
          */
@@ -1344,6 +1388,29 @@ export interface components {
             name: string;
             /** Password */
             password: string;
+        };
+        /**
+         * Logs
+         * @description Lines in the order of their times.
+         */
+        Logs: {
+            /** Lines */
+            lines: components["schemas"]["LogLine"][];
+            /**
+             * Cut
+             * @description there are older lines that were asked for
+             */
+            cut: boolean;
+            /**
+             * Short
+             * @description processes of whose log only the end was read, which begins later than asked
+             */
+            short: string[];
+            /**
+             * Missing
+             * @description the others are told all the same
+             */
+            missing: components["schemas"]["MissingLog"][];
         };
         /**
          * Machine
@@ -1442,6 +1509,16 @@ export interface components {
              * @description s since the gateway last reported, null: never
              */
             age?: number | null;
+        };
+        /**
+         * MissingLog
+         * @description A log that could not be read.
+         */
+        MissingLog: {
+            /** Process */
+            process: string;
+            /** @description why */
+            reason: components["schemas"]["ReasonView"];
         };
         /**
          * Nothing
@@ -4990,6 +5067,91 @@ export interface operations {
                 content: {
                     "text/csv; charset=utf-8": unknown;
                     "application/octet-stream": unknown;
+                };
+            };
+            /** @description the request cannot be read */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description log in first */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description there is no such thing */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description refused; the message says why */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description a value is wrong */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description a module of the site is away or does not answer */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+        };
+    };
+    logs_api_logs_get: {
+        parameters: {
+            query?: {
+                /** @description only its processes */
+                machine?: string;
+                /** @description its machines and the scheduler, while it ran */
+                run_id?: string;
+                /** @description ISO 8601, or s since 1970 */
+                begin?: string | null;
+                /** @description ISO 8601, or s since 1970 */
+                end?: string | null;
+                /** @description lines at most, the newest */
+                limit?: number;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Logs"];
                 };
             };
             /** @description the request cannot be read */
