@@ -8,8 +8,8 @@ from tms_ur.reasons import Throttled
 # A code that is not in this table is a refusal (409): the request is valid, but not possible now.
 STATUS = {
     **dict.fromkeys(("TASK_MISSING", "RUN_MISSING", "RECORD_MISSING", "NO_RUN", "NO_TREE"), HTTPStatus.NOT_FOUND),
-    **dict.fromkeys(("RUN_NOT_FOUND", "NO_QUESTION", "NO_PROCESS", "UNKNOWN_PROCESS", "NO_MACHINE"), HTTPStatus.NOT_FOUND),
-    "GROUND_NOT_THERE": HTTPStatus.NOT_FOUND,
+    **dict.fromkeys(("NO_QUESTION", "NO_PROCESS", "UNKNOWN_PROCESS", "NO_MACHINE"), HTTPStatus.NOT_FOUND),
+    **dict.fromkeys(("GROUND_NOT_THERE", "RUN_NOT_FOUND"), HTTPStatus.NOT_FOUND),
     **dict.fromkeys(("NO_SERVER", "NO_ANSWER", "RUN_NOT_BEGUN"), HTTPStatus.SERVICE_UNAVAILABLE),
     **dict.fromkeys(("STORE_DOWN", "STORE_FULL", "TOO_MANY_CONSOLES"), HTTPStatus.SERVICE_UNAVAILABLE),
     "LOGIN": HTTPStatus.UNAUTHORIZED,

@@ -14,7 +14,7 @@ from tms_ts.bt import palette
 from tms_ur.models import Event, Host, Joint, Place, Process, Question
 from tms_ur.reason_view import view
 from unit.tms_ur.fakes import NOON
-from yard import RUN, Yard, serving, shape
+from yard import RUN, Yard, log_line, serving, shape
 
 pytestmark = pytest.mark.browser
 PHONE = 390  # px
@@ -28,7 +28,8 @@ PLACES = {
     "editor/new": (["[data-path='0']"], "#ed_form"),
     "data": (["[aria-label^='History of']"], "#list_records tr"),
     "tasks": ([], "#list_stored tr"),
-    "system": ([], "#list_processes tr"),
+    "system": ([], "#list_on_demand tr"),
+    "system/machine/zx200": ([], "#log"),
     "work": ([], "#list_work tr"),
     "components": ([], "#page [data-path='0.3']"),
 }
@@ -45,7 +46,12 @@ class Busy(Yard):
         states = "".join("1" if path in ("0", "0.1", "0.1.0") else "2" for path in TREE["paths"])
         self.board.put_runs([RUN.model_copy(update={"leaf": "0.1.0", "nodes": states})], [asked])
         self.board.put_place("ic120", Place(x=1.0, y=2.0, yaw=0.5))
-        self.board.put_host(Host(name="pc", processes=[Process(name="tms:db", state="FATAL")]))
+        rows = [("tms:db", "FATAL", False), ("zx200:rc", "RUNNING", False), ("zx200:st", "RUNNING", True)]
+        processes = [Process(name=name, state=state, on_demand=later) for name, state, later in rows]
+        self.board.put_host(Host(name="pc", processes=processes))
+
+    def log(self, process: str, size: int) -> str:
+        return "".join(log_line(second, level) for second, level in enumerate(("INFO", "WARNING", "ERROR")))
 
 
 @pytest.fixture

@@ -176,7 +176,7 @@ def test_a_process_is_whole_on_a_phone(page: Page, address: str, yard: Yard) -> 
     for part in (row.get_by_text("Running"), row.get_by_role("button").first, row.get_by_role("button").last):
         box = part.bounding_box()
         assert box and box["x"] >= 0 and box["x"] + box["width"] <= 390
-    table = page.get_by_role("region", name="Processes")
+    table = page.get_by_role("region", name="Always running")
     assert table.evaluate("it => it.scrollWidth <= it.clientWidth"), "nothing is to be scrolled sideways"
     assert page.evaluate("document.documentElement.scrollWidth") <= 390
     assert "CPU" in row.evaluate("it => [...it.cells].map((one) => getComputedStyle(one, '::before').content).join()")

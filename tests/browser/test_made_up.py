@@ -20,7 +20,7 @@ from tms_ts.bt import check, palette
 from tms_ur.models import Event, Host, Place, Process, Question
 from tms_ur.reason_view import view
 from unit.tms_ur.fakes import NOON
-from yard import RUN, Yard, serving
+from yard import RUN, Yard, log_line, serving, shape
 
 pytestmark = pytest.mark.browser
 SHAPE = {"paths": ["0"], "names": ["all"], "types": ["Sequence"], "kinds": ["control"], "ports": [""]}
@@ -221,7 +221,12 @@ def test_a_stopped_process_is_a_fault_only_where_it_should_run(page: Page, addre
     rows = [Process(name="zx200:st_swing", state="STOPPED", on_demand=True), Process(name="tms:db", state="STOPPED")]
     yard.board.put_host(Host(name="pc", processes=rows))
     page.goto(f"{address}/#system")
-    expect(page.locator("#list_processes tr")).to_contain_text(["tms:dbpc! Down", "zx200:st_swingpc■ On demand"])
+    expect(page.get_by_role("region", name="Always running").locator("#list_processes tr")).to_contain_text(
+        ["tms:dbpc! Down"]
+    )
+    expect(page.get_by_role("region", name="Started on demand").locator("tbody tr")).to_contain_text(
+        ["zx200:st_swingpc■ On demand"]
+    )
     expect(page.locator("#no_alarms")).to_be_visible()
     yard.board.snapshot()
     yard.now += 15
@@ -233,6 +238,60 @@ def test_a_stopped_process_is_a_fault_only_where_it_should_run(page: Page, addre
     expect(page.locator("#log_text")).to_be_in_viewport()
     page.locator("#log_filter").fill("ended")
     expect(page.locator("#log_text")).to_be_empty()
+
+
+def test_the_logs_of_a_machine_in_one(page: Page, address: str, yard: Yard, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Chosen by hand; the address names it, and a PC that is away is named."""
+    logs = {"zx200:rc": log_line(2, "WARNING", "event=late"), "zx200:st": log_line(1), "tms:ts": log_line(0)}
+    monkeypatch.setattr(yard, "log", lambda process, size: logs[process])
+    yard.board.put_host(Host(name="far", processes=[Process(name="zx200:mc", state="RUNNING")]))
+    yard.now += 7
+    yard.receive()
+    yard.board.put_host(Host(name="pc", processes=[Process(name=name, state="RUNNING") for name in logs]))
+    page.goto(f"{address}/#system")
+    page.get_by_role("combobox", name="Log of").select_option("Machine")
+    page.get_by_role("combobox", name="Machine", exact=True).select_option("zx200")
+    text = page.locator("#log_text")
+    expect(text).to_have_text(re.compile(r"^.* INFO zx200:st event=begun\n.* WARNING zx200:rc event=late$"))
+    expect(page.locator("#log")).to_contain_text("The log of zx200:mc cannot be read: PC far says nothing")
+    page.locator("#log_filter").fill("late")
+    expect(text).to_have_text(re.compile(r"^.* WARNING zx200:rc event=late$"))
+    page.reload()
+    expect(text).to_contain_text("event=begun")
+    page.goto(f"{address}/#system/run/r-1")
+    expect(page.locator("#log_name")).to_have_value("r-1")
+    expect(text).to_contain_text("tms:ts event=begun")
+
+
+def test_the_log_of_a_run_follows_the_cursor(
+    page: Page, address: str, yard: Yard, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A line puts the cursor where it is; the log is asked for once."""
+    facts = {"node": "0", "text": "x IDLE -> RUNNING"}
+    tree = Event(number=1, stamp=NOON, kind="tree", node="", text="", values={**shape(1, 1)})
+    late = Event(number=2, stamp=NOON + timedelta(seconds=4), kind="node", **facts)
+    yard.journals = {"r-1": [tree, late]}
+    lines = [log_line(1), log_line(3, "ERROR", "event=lost"), log_line(4.5)]
+    monkeypatch.setattr(yard, "log", lambda process, size: "".join(lines))
+    yard.unrecorded = True
+    yard.board.put_runs([])
+    yard.board.put_host(Host(name="pc", processes=[Process(name="tms:ts", state="RUNNING")]))
+    asked: list[str] = []
+    page.on("request", lambda request: asked.append(request.url) if "/api/logs" in request.url else None)
+    page.goto(f"{address}/#history/r-1")
+    rows = page.locator("#run_log .log_line")
+    expect(rows).to_have_count(2)  # up to the last event
+    lost = rows.nth(1)
+    expect(lost).to_contain_text("⬣ ERROR tms:ts event=lost")
+    box = lost.bounding_box()
+    assert box and box["height"] >= 44
+    lost.click()
+    expect(page.locator("#slider")).to_have_value("30")
+    page.locator("#slider").fill("15")
+    expect(rows).to_have_count(1)
+    page.locator("#slider").fill("40")
+    expect(rows).to_have_count(2)
+    assert len(asked) == 1
 
 
 def test_long_lines_of_a_log_leave_the_buttons_of_its_process_on_the_page(page: Page, address: str, yard: Yard) -> None:

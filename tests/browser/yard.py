@@ -41,6 +41,12 @@ def shape(branches: int, leaves: int) -> dict[str, list[str]]:
     return {"paths": paths, "names": types, "types": types, "kinds": kinds, "ports": ports}
 
 
+def log_line(second: float, level: str = "INFO", text: str = "event=begun") -> str:
+    """A line of a process's log, some seconds after noon."""
+    there = (NOON + timedelta(seconds=second)).astimezone().replace(tzinfo=None)
+    return f"{there.isoformat(timespec='microseconds')} {level} {text}\n"
+
+
 class Yard(FakeSiteClient):
     """Two machines, and a clock that the test turns."""
 

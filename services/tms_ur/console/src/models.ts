@@ -12,6 +12,7 @@ export type FieldGiven = Models["FieldGiven"];
 export type Finding = Models["Finding"];
 export type Ground = Models["Ground"];
 export type Joint = Models["Joint"];
+export type Logs = Models["Logs"];
 export type Machine = Models["Machine"];
 export type Process = Models["Process"];
 export type Question = Models["Question"];

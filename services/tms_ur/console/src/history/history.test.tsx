@@ -6,6 +6,7 @@ import { Attempts } from "../tree/attempts";
 import type { TreeNode } from "../tree/shape";
 import { Cursor } from "./cursor";
 import { lanesOf } from "./lanes";
+import { gravityOf, type LogLine, linesUpTo, rowsOf as logRowsOf } from "./log_lines";
 import { rowsOf } from "./rows";
 
 configure({ asyncUtilTimeout: 60_000 }); // ms; a busy machine is no failure
@@ -41,6 +42,23 @@ test("what a loop repeats is one row", () => {
   expect(rows.map((row) => [row.event.number, row.times])).toEqual([
     [299, 150],
     [298, 150],
+  ]);
+});
+
+test("log lines are the last ones up to the cursor", () => {
+  const line = (second: number, level = "INFO") =>
+    ({ time: new Date(BEGIN + second * 1000).toISOString(), process: "a:rc", level, text: `${second}` }) as LogLine;
+  const rows = logRowsOf([1, 2, 2, 3].map((second) => line(second)));
+  const shown = (second: number, most = 50) => linesUpTo(rows, BEGIN + second * 1000, most).map((row) => row.line.text);
+  expect(shown(0)).toEqual([]);
+  expect(shown(2)).toEqual(["1", "2", "2"]);
+  expect(shown(9, 2)).toEqual(["2", "3"]);
+  expect(["INFO", "", "WARNING", "ERROR", "CRITICAL"].map((level) => gravityOf(line(1, level)))).toEqual([
+    "",
+    "",
+    "warning",
+    "critical",
+    "critical",
   ]);
 });
 

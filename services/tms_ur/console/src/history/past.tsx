@@ -20,6 +20,7 @@ import { LaneView } from "./lane_view";
 import { Motion } from "./motion";
 import { RecordThen } from "./record_then";
 import { recordedUntil } from "./recording";
+import { RunLog } from "./run_log";
 import { useRecording } from "./use_recording";
 
 const FORMS = ["JSON", "CSV", "MCAP"];
@@ -68,6 +69,7 @@ function Line({ id, run, seconds, journal, live }: Props & { journal: Journal; l
         <Cursor run={id} journal={journal} end={end} time={time} onTime={setChosen} />
         <LaneView journal={journal} end={end} time={time} onTime={setChosen} />
       </div>
+      <RunLog id={id} live={live} time={time} onTime={(moment) => setChosen(Math.max(begin, moment))} />
       <PastTree journal={journal} time={time} />
       <h3>{t("motion")}</h3>
       <Problem id="motion_problem" error={error} />

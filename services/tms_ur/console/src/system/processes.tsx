@@ -1,4 +1,4 @@
-// The processes of every PC; the log of one opens below its row.
+// The processes of every PC, essential ones apart from those on demand; the log of one opens below its row.
 import { restartProcess } from "old/actions.js";
 import { duration } from "old/dom.js";
 import { Fragment, useState } from "react";
@@ -9,7 +9,7 @@ import type { Process, State } from "../models";
 import { Said } from "../said";
 import { Table } from "../table";
 import { ProcessLog } from "./log";
-import { isDown, type Row, rowsOf } from "./rows";
+import { groupsOf, isDown, type Row } from "./rows";
 
 const HEADS = 8; // columns
 const QUIET = new Set(["RUNNING", "STOPPED"]); // states of which supervisord only tells the time
@@ -23,7 +23,8 @@ interface Props {
 export function Processes({ state, open, onOpen }: Props) {
   const { t } = useTranslation();
   const [words, setWords] = useState("");
-  const rows = rowsOf(state, words);
+  const { essential, onDemand } = groupsOf(state, words);
+  const shared = { running: state.runs.length, open, onOpen };
   return (
     <>
       <h2>{t("processes")}</h2>
@@ -32,15 +33,33 @@ export function Processes({ state, open, onOpen }: Props) {
         <input id="process_filter" type="search" value={words} onChange={(event) => setWords(event.target.value)} />
       </label>
       {state.hosts.length === 0 && <p id="none_processes">{t("none_processes")}</p>}
-      <Table
-        id="list_processes"
-        label="processes"
-        heads={["process", "host", "state", "uptime", "cpu", "memory", "restarts", "log"]}
-        blocks
-      >
+      <Group id="list_processes" label="essential_processes" rows={essential} {...shared} />
+      <Group id="list_on_demand" label="on_demand_processes" rows={onDemand} {...shared} />
+    </>
+  );
+}
+
+interface GroupProps {
+  id: string;
+  label: string; // key of its heading
+  rows: Row[];
+  running: number; // active runs
+  open: string;
+  onOpen: (process: string) => void;
+}
+
+function Group({ id, label, rows, running, open, onOpen }: GroupProps) {
+  const { t } = useTranslation();
+  if (rows.length === 0) {
+    return null;
+  }
+  return (
+    <>
+      <h3>{t(label)}</h3>
+      <Table id={id} label={label} heads={["process", "host", "state", "uptime", "cpu", "memory", "restarts", "log"]} blocks>
         {rows.map((row) => (
           <Fragment key={`${row.host}/${row.process.name}`}>
-            <Line row={row} running={state.runs.length} open={open === row.process.name} onOpen={onOpen} />
+            <Line row={row} running={running} open={open === row.process.name} onOpen={onOpen} />
             {open === row.process.name && (
               <tr>
                 <td colSpan={HEADS} className="wide_lines">

@@ -13,13 +13,16 @@ export interface Row {
   process: Process;
 }
 
-/** Those that hold `words` in their name or PC; what is down first, then essential ones, then those on demand. */
-export function rowsOf(state: State, words: string): Row[] {
-  const rank = ({ process }: Row) => (isDown(process) ? 0 : process.on_demand ? 2 : 1);
-  return state.hosts
+/** Those that hold `words` in their name or PC, essential ones apart from those on demand; what is down comes first. */
+export function groupsOf(state: State, words: string): { essential: Row[]; onDemand: Row[] } {
+  const found = state.hosts
     .flatMap((host) => host.processes.map((process) => ({ host: host.name, process })))
-    .filter(({ host, process }) => `${process.name} ${host}`.toLowerCase().includes(words.toLowerCase()))
-    .map((row, index) => ({ row, index }))
-    .sort((one, other) => rank(one.row) - rank(other.row) || one.index - other.index)
-    .map(({ row }) => row);
+    .filter(({ host, process }) => `${process.name} ${host}`.toLowerCase().includes(words.toLowerCase()));
+  const group = (on_demand: boolean) => downFirst(found.filter(({ process }) => process.on_demand === on_demand));
+  return { essential: group(false), onDemand: group(true) };
 }
+
+const downFirst = (rows: Row[]) => [
+  ...rows.filter(({ process }) => isDown(process)),
+  ...rows.filter(({ process }) => !isDown(process)),
+];
