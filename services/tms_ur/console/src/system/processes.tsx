@@ -56,7 +56,12 @@ function Group({ id, label, rows, running, open, onOpen }: GroupProps) {
   return (
     <>
       <h3>{t(label)}</h3>
-      <Table id={id} label={label} heads={["process", "host", "state", "uptime", "cpu", "memory", "restarts", "log"]} blocks>
+      <Table
+        id={id}
+        label={label}
+        heads={["process", "host", "state", "uptime", "cpu", "memory", "restarts", "log"]}
+        blocks
+      >
         {rows.map((row) => (
           <Fragment key={`${row.host}/${row.process.name}`}>
             <Line row={row} running={running} open={open === row.process.name} onOpen={onOpen} />
