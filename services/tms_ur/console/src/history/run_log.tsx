@@ -45,7 +45,7 @@ function Lines({ rows, onTime }: { rows: Row[]; onTime: (time: number) => void }
     }
   }, [last]);
   return (
-    <ol ref={box} className="plain log_lines" hidden={rows.length === 0}>
+    <ol ref={box} className="log_lines" hidden={rows.length === 0}>
       {rows.map(({ key, time, line }) => (
         <li key={key}>
           <button type="button" className={`log_line ${gravityOf(line)}`} onClick={() => onTime(time)}>
