@@ -269,7 +269,7 @@ def test_a_newer_schema_is_refused(db: store.Db) -> None:
     code, text = refusal(lambda: schema.bring_up(db))
     assert code == "STORE_NEWER"
     assert f"has schema {schema.NEWEST + 1}, this program" in text
-    assert "install the newer program" in text
+    assert "Install the newer program, or restore a backup from before" in text
 
 
 # what restore refuses; the database stays as it was
