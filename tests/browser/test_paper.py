@@ -73,7 +73,7 @@ def test_a_long_table_is_whole_over_pages(page: Page, address: str) -> None:
     expect(page.locator("#list_processes tr")).to_have_count(LONG)
     assert pages(page.pdf(format="A4")) >= 2
     on_paper(page)
-    table = page.get_by_role("region", name="Processes")
+    table = page.get_by_role("region", name="Always running")
     assert table.evaluate("it => getComputedStyle(it).overflowX") == "visible"
     assert table.evaluate("it => getComputedStyle(it.querySelector('thead')).display") == "table-header-group"
     assert table.evaluate("it => getComputedStyle(it.querySelector('tbody tr')).breakInside") == "avoid"
