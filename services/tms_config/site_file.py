@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, ValidationError, field_validator, model_validator
+from pydantic import AnyHttpUrl, Field, ValidationError, field_validator, model_validator
 
 from tms_config.models import NAME, Backend, Settings
 from tms_config.reasons import FormNotSaid, HalfALogin, NoUri, PasswordInUri, TwoPlanners, UserTwice
@@ -185,6 +185,7 @@ class Console(Settings):
     # /urpermission starts these, /task_sequence the trees that it brings. ROS does not tell who asks.
     buttons: tuple[Annotated[int, Field(ge=1)], ...] = ()
     names: tuple[str, ...] = ()  # further names under which browsers reach it, e.g. site-pc.example
+    prometheus: AnyHttpUrl | None = None  # tells alerts that only metrics show, e.g. http://127.0.0.1:9090
 
 
 class OnLoss(Settings):

@@ -24,12 +24,11 @@ class AlarmKeeper:
         self._pending: dict[tuple[str, str], Pending] = {}
 
     def judge(self, facts: Facts) -> list[Alarm]:
-        """What is to be told now, the critical first, in the order of the rules."""
+        """What is to be told now, in the order of the rules."""
         found = [(rule, *finding) for rule in RULES for finding in rule.find(facts, *rule.numbers)]
         self._pending = {(rule.name, on): self._since(rule, on, why, facts) for rule, on, why in found}
         lasts = {rule.name: rule.lasts for rule in RULES}
-        told = [one.alarm for one in self._pending.values() if facts.now - one.began >= lasts[one.alarm.name]]
-        return sorted(told, key=lambda alarm: alarm.severity != "critical")
+        return [one.alarm for one in self._pending.values() if facts.now - one.began >= lasts[one.alarm.name]]
 
     def _since(self, rule: Rule, subject: str, why: Reason, facts: Facts) -> Pending:
         before = self._pending.get((rule.name, subject))

@@ -21,8 +21,9 @@ SCHEDULER, DISCOVERY = "tms:ts", "tms:discovery"
 RIVAL = "RIVAL"  # code of a gateway's reason that names another gateway of its machine
 UP = "RUNNING"
 
-# Alerts whose facts only the metrics of one process tell. Where something of them matters to an operator at once, the
-# process concerned says so itself: a refusal of tms:db, the page Data, a run that waits.
+# Alerts whose facts only the metrics of one process tell: prometheus.py asks Prometheus for them where the site names
+# it. Where something of them matters to an operator at once, the process concerned says so itself: a refusal of tms:db,
+# the page Data, a run that waits.
 NOT_SEEN_HERE: Mapping[str, str] = {
     "TmsSubtaskDown": "only who asks it knows whether it answers; a frozen one is restarted, which counts",
     "TmsTickOverrun": "ticks are counted in the scheduler only",

@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterable
 
 from tms_config.clock import monotonic, utc_now
 from tms_ur.alarm_keeper import AlarmKeeper
+from tms_ur.alarm_models import Alarm
 from tms_ur.alarms import HOST_SILENT, Facts
 from tms_ur.models import ActiveRun, Host, LastStop, Load, Machine, Place, Process, Question, Scheduler
 from tms_ur.place_models import SharedPlaces
@@ -43,6 +44,7 @@ class Board:
         self._standing_in: set[str] = set()
         self._inputs: tuple[dict[str, str], float] | None = None
         self._alarms = AlarmKeeper()
+        self._told: list[Alarm] = []  # what Prometheus tells besides
         self._listeners: list[Callable[[], None]] = []
         self.closed = False
 
@@ -97,6 +99,13 @@ class Board:
                 self._stood_in.put(name, self._clock())
             (self._standing_in.add if commands else self._standing_in.discard)(name)
         self._publish()
+
+    def put_told(self, alarms: list[Alarm]) -> None:
+        """Take the alarms that Prometheus tells."""
+        with self._lock:
+            self._told, before = alarms, self._told
+        if alarms != before:
+            self._publish()
 
     def put_inputs(self, states: dict[str, str]) -> None:
         """Take the states of all sensing inputs."""
@@ -183,7 +192,9 @@ class Board:
                 hosts=[_host(host, now - at) for _, (host, at) in sorted(self._hosts.items())],
                 shared=self._shared,
             )
-            return state.model_copy(update={"alarms": self._alarms.judge(self._facts(state, now))})
+            judged = self._alarms.judge(self._facts(state, now))
+            alarms = sorted([*judged, *self._told], key=lambda alarm: alarm.severity != "critical")
+            return state.model_copy(update={"alarms": alarms})
 
     def _facts(self, state: State, now: float) -> Facts:
         inputs, told = self._inputs or ({}, now)

@@ -87,6 +87,8 @@ class LongUnready(Reason, text="process {process} has not been able to work for 
 class CrashLoop(Reason, text="process {process} ends again and again", action=LOGS): process: str
 class InputQuiet(Reason, text="sensing input {input} has fallen silent",
     details="is the sensing PC on, does its node publish? Records with max_age refuse to be used meanwhile"): input: str
+class PrometheusAway(Reason, text="Prometheus at {address} does not tell its alerts", details="{problem}",
+    action=EDIT_CONFIG): address: str; problem: str
 class SensingClockOff(Reason, text="the clock behind sensing input {input} is off",
     details="`chronyc tracking` on the sensing PC: the age of its values is not known"): input: str
 

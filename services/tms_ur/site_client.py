@@ -90,7 +90,7 @@ class SiteClient(MachineCalls):
         ros.subscribe(Processes, "/tms/host/processes", self._on_processes, depth=10, latched=True)
         ros.subscribe(InputStates, "/tms/sp/inputs", self._on_inputs, latched=True)
         ros.poll_in_thread(PERIOD, self._update_places, "places")
-        alarm_topics.listen(ros, names, self.board)
+        alarm_topics.listen(ros, names, self.board, str(site.file.console.prometheus or ""))
 
     # topics
 

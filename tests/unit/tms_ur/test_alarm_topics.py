@@ -28,7 +28,7 @@ class FakeRos:
 def test_topics_become_alarms_also_while_no_console_is_open() -> None:
     now = [100.0]
     board, ros = Board([], lambda: now[0]), FakeRos()
-    listen(ros, ["zx200"], board)  # type: ignore[arg-type]
+    listen(ros, ["zx200"], board, "")  # type: ignore[arg-type]
     told = InputStates(inputs=[InputState(name="pile", state="silent"), InputState(name="rain", state="alive")])
     board.put_runs([])
     ros.callbacks["/tms/sp/inputs"](told)
@@ -40,3 +40,11 @@ def test_topics_become_alarms_also_while_no_console_is_open() -> None:
     now[0] += 1
     found = [(alarm.name, alarm.subject) for alarm in board.snapshot().alarms]
     assert found == [("TmsGatewayLost", "zx200"), ("TmsSensingStale", "pile")]
+
+
+def test_prometheus_is_asked_where_the_site_names_it() -> None:
+    """It is not there, and that is told beside what is judged here."""
+    board, ros = Board([]), FakeRos()
+    listen(ros, [], board, "http://127.0.0.1:9")  # type: ignore[arg-type]
+    ros.steps[-1]()
+    assert [alarm.name for alarm in board.snapshot().alarms] == ["PrometheusAway"]

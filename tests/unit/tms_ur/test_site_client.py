@@ -9,6 +9,7 @@ from tf2_msgs.msg import TFMessage
 
 from tms_config.clock import monotonic
 from tms_config.models import Border, Source
+from tms_config.site_file import Console
 from tms_ros.topics import Arrival
 from tms_ur.models import Place
 from tms_ur.site_client import SiteClient
@@ -39,7 +40,7 @@ def test_places_of_machines_and_their_ages(monkeypatch: pytest.MonkeyPatch) -> N
         poll_in_thread=lambda _, step, __: step(),
     )  # fmt: skip
     machines = {name: SimpleNamespace(hardware={}) for name in BORDERS}
-    file = SimpleNamespace(machines=machines, ground=None)
+    file = SimpleNamespace(machines=machines, ground=None, console=Console())
     site: Any = SimpleNamespace(file=file, border=BORDERS.__getitem__, area_files=[])
     shown = {machine.name: machine for machine in SiteClient(ros, site).board.snapshot().machines}
     assert {name: one.place for name, one in shown.items()} == {
