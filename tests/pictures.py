@@ -3,8 +3,8 @@
 deploy/pictures/<page>.png are those of README.md and README.ja.md. .state/pictures has all pages in both languages and
 three sizes, each page as long as it is: to look at, after a change of the console.
 
-The task of the newest run that succeeded is run once more, so that there is something to see on the pages of what goes
-on now. It is left to end by itself.
+The task of the newest run that succeeded is run once more, or more often, so that there is something to see on the
+pages of what goes on now. It is left to end by itself.
 """
 
 from __future__ import annotations
@@ -34,6 +34,7 @@ SIZES = {  # px
 MORE = ("map/3d", "editor/{task}", "components")  # places that the navigation has no link to
 # Pages without navigation: the address, and what shows that it is there.
 ALONE = {"panel": ("panel.html?task={task}", "#state:not(:empty)"), "login": ("#login", "#login_name")}
+GOING_ON = ("board", "tree")  # places that show the run of now
 NOBODY = {"name": None, "role": None, "login": True}  # a session before the login: the demo's console asks for none
 LARGEST = 150_000  # bytes of a picture
 LIMIT = 60.0  # s for whatever must happen at all
@@ -78,7 +79,9 @@ def finished_run(url: str) -> Any:
 
 
 def start(url: str, task: int) -> None:
-    """Run a task; returns when it has begun."""
+    """Run a task, if none runs: on a busy PC a run is over before all pictures of it are taken."""
+    if ask(url, "/api/state")["runs"]:
+        return
     try:
         ask(url, "/api/runs", {"task_id": task})
     except Refused as error:
@@ -119,6 +122,8 @@ def take_all(browser: Browser, url: str, past: str, task: int) -> None:
     links = english.locator("#pages a").evaluate_all("links => links.map((link) => link.hash.slice(1))")
     for place in [*links, *(one.format(task=task) for one in MORE)]:
         for (ending, size), page in pages.items():
+            if place in GOING_ON:
+                start(url, task)
             take(page, url, f"history/{past}" if place == "history" else place, ending, size)
     for (ending, size), page in pages.items():
         take_alone(page, url, task, f"{size}{ending}")
@@ -164,7 +169,6 @@ def main() -> int:
         url = address.url(load_site().file)
         done = finished_run(url)
         with chromium() as browser:
-            start(url, done["task_id"])
             for folder in (PICTURES, ALL):
                 folder.mkdir(parents=True, exist_ok=True)
             take_all(browser, url, done["run_id"], done["task_id"])
