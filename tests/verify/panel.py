@@ -36,11 +36,12 @@ class Panel:
         self._page.evaluate(NOTE_PRESS)
 
     def start(self) -> tuple[str, float]:
-        """Press the green button; the run, and the time until it had begun [s]."""
-        expect(self._page.locator("#start")).to_be_enabled()
+        """Press the green button and say yes to the machines that will move; the run, and s from there to its begin."""
+        self._page.locator("#start").click()
+        expect(self._page.locator("#dialog_text")).to_contain_text("zx200")
         begun = time.time()
         with self._page.expect_response(lambda answer: answer.url.endswith("/api/runs")) as told:
-            self._page.locator("#start").click()
+            self._page.locator("#dialog_yes").click()
         return str(told.value.json()["run_id"]), time.time() - begun
 
     def stop(self) -> Stopped:
