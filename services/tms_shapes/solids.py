@@ -1,9 +1,9 @@
 """The solids of a machine."""
 
-import math
 from collections.abc import Iterator
 
 from tms_config.models import Box, MachineModel, Solid
+from tms_control.links import turned
 
 
 def solids(model: MachineModel) -> tuple[Solid, ...]:
@@ -21,7 +21,8 @@ def _boxes(model: MachineModel) -> Iterator[Solid]:
 
 def _corners(box: Box) -> Iterator[tuple[float, float]]:
     """X and z of a box on its link, which turns it about y."""
-    c, s = math.cos(box.pitch), math.sin(box.pitch)
+    turn = turned("y", box.pitch)
     (x0, _, z0), (x1, _, z1) = box.min, box.max
-    for x, z in ((x0, z0), (x1, z0), (x1, z1), (x0, z1)):
-        yield c * x + s * z, c * z - s * x
+    for corner in ((x0, 0.0, z0), (x1, 0.0, z0), (x1, 0.0, z1), (x0, 0.0, z1)):
+        x, _, z = (turn @ corner).tolist()
+        yield x, z

@@ -4,14 +4,15 @@ Form: the specification of ROS's urdf package. A joint that the file gives no li
 moves is fixed. Nobody has told the torques of the joints: `effort`, which the form demands, is 0.
 """
 
-import math
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+import numpy as np
 from lxml import etree
 from lxml.builder import E
 
 from tms_config.models import Box, Joint, MachineModel, Origin, Solid
+from tms_control.links import turned
 
 COLOURS: dict[str, str] = {  # red, green, blue, opacity, as in the console
     "track": "0.23 0.25 0.29 1", "body": "1 0.69 0 1", "arm": "1 0.79 0.3 1", "tool": "0.48 0.33 0.09 1",
@@ -51,10 +52,9 @@ def _link(link: str, body: Box | None, meshes: Meshes) -> Any:
 
 def _collision(box: Box) -> Any:
     """A box of its link, which is turned about y."""
-    x, y, z = ((low + high) / 2 for low, high in zip(box.min, box.max, strict=True))
-    c, s = math.cos(box.pitch), math.sin(box.pitch)
-    size = (high - low for low, high in zip(box.min, box.max, strict=True))
-    return E.collision(_origin((c * x + s * z, y, c * z - s * x), box.pitch), E.geometry(E.box(size=_row(size))))
+    middle = turned("y", box.pitch) @ (np.add(box.min, box.max) / 2)
+    size = np.subtract(box.max, box.min)
+    return E.collision(_origin(middle, box.pitch), E.geometry(E.box(size=_row(size))))
 
 
 def _joint(name: str, at: Origin, limits: Joint | None) -> Any:
@@ -70,7 +70,7 @@ def _joint(name: str, at: Origin, limits: Joint | None) -> Any:
     return E.joint(*parts, E.limit(**bounds), name=name, type="revolute")
 
 
-def _origin(xyz: tuple[float, float, float], pitch: float) -> Any:
+def _origin(xyz: Iterable[float], pitch: float) -> Any:
     return E.origin(xyz=_row(xyz), rpy=_row((0.0, pitch, 0.0)))
 
 
