@@ -12,6 +12,7 @@ from tms_ur.reason_view import view
 class Pending:
     """A rule holds for something since then; the alarm is made once, as each has texts in two languages."""
 
+    rule: Rule
     reason: Reason
     began: float  # s
     alarm: Alarm
@@ -27,8 +28,7 @@ class AlarmKeeper:
         """What is to be told now, in the order of the rules."""
         found = [(rule, *finding) for rule in RULES for finding in rule.find(facts, *rule.numbers)]
         self._pending = {(rule.name, on): self._since(rule, on, why, facts) for rule, on, why in found}
-        lasts = {rule.name: rule.lasts for rule in RULES}
-        return [one.alarm for one in self._pending.values() if facts.now - one.began >= lasts[one.alarm.name]]
+        return [one.alarm for one in self._pending.values() if facts.now - one.began >= one.rule.lasts]
 
     def _since(self, rule: Rule, subject: str, why: Reason, facts: Facts) -> Pending:
         before = self._pending.get((rule.name, subject))
@@ -36,4 +36,4 @@ class AlarmKeeper:
             return before
         began, since = (before.began, before.alarm.since) if before else (facts.now, facts.state.time)
         alarm = Alarm(name=rule.name, severity=rule.severity, subject=subject, reason=view(why), since=since)
-        return Pending(why, began, alarm)
+        return Pending(rule, why, began, alarm)
