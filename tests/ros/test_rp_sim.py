@@ -93,6 +93,7 @@ class Rig:
         self.ros.subscribe(JointState, f"/{MACHINE}/joint_states", self.states.append, depth=10)
         self.ros.subscribe(TFMessage, "/tf", self._framed, depth=10)
         self.stop = self.ros.publisher(Bool, f"/{MACHINE}/emg_stop")
+        self.places = self.ros.publisher(TFMessage, "/tf", depth=10)
 
     def _framed(self, message: TFMessage) -> None:
         self.frames |= {(one.header.frame_id, one.child_frame_id) for one in message.transforms}
@@ -144,6 +145,24 @@ class Rig:
         """The reason of this kind in what was said last."""
         return wire.known(self.said[-1]).find(kind) if self.said else None
 
+    def with_other(self, away: float, bearing: float, there: Callable[[], bool]) -> Callable[[], bool]:
+        """`there`, while the other machine is told to be at a place."""
+        return lambda: bool(self.places.publish(at(away, bearing))) or there()
+
+    def waits(self) -> bool:
+        """Whether it has said that it plans anew, as its way is blocked."""
+        return any(wire.known(said).find(PlannedAnew) is not None for said in self.said)
+
+    def scene(self) -> GetScene.Response:
+        """What the planner plans among."""
+        self.until(lambda: self.ros.has_service(GetScene, f"/{MACHINE}/rp/get_scene"), "the service")
+        return self.ros.call(GetScene, f"/{MACHINE}/rp/get_scene", GetScene.Request(), LIMIT)
+
+    def meet_other(self) -> None:
+        """Until the planner hears where the other machine is: not in its way."""
+        known = self.with_other(AWAY, 0.0, lambda: any(one.kind == "machine" for one in self.scene().bodies))
+        self.until(known, "the place of the other machine is heard")
+
 
 @pytest.fixture(scope="module")
 def rig(tmp_path_factory: pytest.TempPathFactory, domain: int, first_port: int) -> Iterator[Rig]:
@@ -174,8 +193,10 @@ def machine(rig: Rig) -> Rig:
 
     def there() -> bool:
         outcome = rig.end(rig.change_pose(*START))
-        if rig.reason(MachineLatched):  # the test before this one has failed
-            rearm(rig.ros, MACHINE)
+        if outcome is not Outcome.SUCCEEDED:  # the test before this one has failed
+            rig.places.publish(at(AWAY, 0.0))
+            if rig.reason(MachineLatched):
+                rearm(rig.ros, MACHINE)
         return outcome is Outcome.SUCCEEDED
 
     rig.until(there, "start pose")
@@ -223,22 +244,14 @@ def test_excavate_then_release(machine: Rig) -> None:
 
 
 def test_a_dig_that_is_blocked_is_planned_anew_from_where_it_was(machine: Rig) -> None:
-    frames = machine.ros.publisher(TFMessage, "/tf", depth=10)
+    machine.meet_other()
     soil = TmsRpZx200PositionWithAngle(position=Point(x=-4.0, y=4.5, z=0.0), theta_w=1.6)
     dig = machine.send(Excavate, "tms_rp_zx200_excavate", position_with_angle=soil, depth=0.4, drag=1.0, lift=0.5)
     machine.until(machine.moving, "motion")
 
-    def waits() -> bool:
-        frames.publish(at(7.0, 1.6))
-        return any(wire.known(said).find(PlannedAnew) is not None for said in machine.said)
-
-    def over() -> bool:
-        frames.publish(at(AWAY, 1.6))
-        return dig.outcome is not None
-
-    machine.until(waits, "a way that is blocked")
+    machine.until(machine.with_other(7.0, 1.6, machine.waits), "a way that is blocked")
     assert dig.outcome is None and not machine.moving()
-    machine.until(over, "end of the dig")
+    machine.until(machine.with_other(AWAY, 1.6, lambda: dig.outcome is not None), "end of the dig")
     assert dig.outcome is Outcome.SUCCEEDED
     swing, boom, arm, bucket, _ = machine.states[-1].position
     assert swing == pytest.approx(math.atan2(4.53, -4.11), abs=0.06)
@@ -298,33 +311,21 @@ def at(away: float, bearing: float) -> TFMessage:
 
 
 def test_what_comes_into_the_way_is_waited_for_and_the_motion_goes_on(machine: Rig) -> None:
-    frames = machine.ros.publisher(TFMessage, "/tf", depth=10)
-
-    def told(where: TFMessage, there: Callable[[], bool]) -> Callable[[], bool]:
-        return lambda: bool(frames.publish(where)) or there()
-
-    def waits() -> bool:
-        return any(wire.known(said).find(PlannedAnew) is not None for said in machine.said)
-
+    machine.meet_other()
     call = machine.change_pose(2.4, *START[1:])
     machine.until(machine.moving, "motion")
-    machine.until(told(at(7.0, 1.8), waits), "a way that is blocked")
+    machine.until(machine.with_other(7.0, 1.8, machine.waits), "a way that is blocked")
     (said, *_) = [known for said in machine.said if (known := wire.known(said)).find(PlannedAnew)]
     assert said.find(PathBlocked) is not None and not machine.moving()
     assert call.outcome is None and machine.states[-1].position[0] < 1.8
-    machine.until(told(at(AWAY, 1.8), lambda: call.outcome is not None), "end of the goal")
+    machine.until(machine.with_other(AWAY, 1.8, lambda: call.outcome is not None), "end of the goal")
     assert call.outcome is Outcome.SUCCEEDED
     assert machine.states[-1].position[0] == pytest.approx(2.4, abs=0.031)
 
 
 def test_the_scene_is_told_and_drawn_for_listeners(rig: Rig) -> None:
-    rig.until(lambda: rig.ros.has_service(GetScene, f"/{MACHINE}/rp/get_scene"), "the service")
-
-    def told() -> GetScene.Response:
-        return rig.ros.call(GetScene, f"/{MACHINE}/rp/get_scene", GetScene.Request(), LIMIT)
-
-    rig.until(lambda: told().error_code == "", "the joints are known")
-    assert len([one for one in told().bodies if one.kind == "own"]) == 5
+    rig.until(lambda: rig.scene().error_code == "", "the joints are known")
+    assert len([one for one in rig.scene().bodies if one.kind == "own"]) == 5
     drawn: list[MarkerArray] = []
     rig.ros.subscribe(MarkerArray, f"/{MACHINE}/rp/scene", drawn.append)
     rig.until(lambda: bool(drawn), "markers")
