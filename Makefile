@@ -137,17 +137,20 @@ restart: setup ## restart one process (P=name)
 	@test -n "$(P)" || { echo "usage: make restart P=zx200:rc (make status lists the names)" >&2; exit 2; }
 	@$(TMS) restart $(P)
 
-test: setup ## all tests that a laptop can run
+test test-fast: export PYTHONDONTWRITEBYTECODE :=
+# pytest keeps the assertions that it has rewritten: its next start takes half as long
+
+test: setup ## tests that a laptop can run; long ones come by turns, each day others (TURN=1, 2, 3, 4; make nightly takes all)
 	@DOCKER=$(DOCKER) sh deploy/system-packages.sh test
 	@$(NPM) test
-	$(PY) -m pytest -n 3 --dist loadfile --no-loadscope-reorder tests || { \
+	$(PY) -m pytest --turn=$(or $(TURN),today) -n 3 --dist loadfile --no-loadscope-reorder tests || { \
 	  echo "again, alone: what passes now was disturbed by other tests on this PC, or is not reliable: both are told"; \
 	  $(PY) -m pytest --last-failed --last-failed-no-failures none -rp tests; }
 
 test-fast: setup ## unit, contract and conformance tests: no ROS processes, two minutes (WORKERS=2)
 	@DOCKER=$(DOCKER) sh deploy/system-packages.sh test
 	@$(NPM) test
-	$(PY) -m pytest -q -n $(WORKERS) tests/unit tests/contract tests/conformance
+	$(PY) -m pytest -q --hypothesis-profile=fast -n $(WORKERS) tests/unit tests/contract tests/conformance
 
 lint: setup ## ruff, mypy, import-linter; Biome and tsc
 	@$(NPM) run lint

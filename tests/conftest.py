@@ -16,10 +16,11 @@ from typing import TYPE_CHECKING, Any
 import pytest
 import structlog
 import yaml
-from hypothesis import settings
 
+import examples
 import programs
 import sharing
+import turns
 
 if TYPE_CHECKING:
     from tms_ros.node import Ros
@@ -31,14 +32,16 @@ DOMAINS = range(43, 101)  # 42 is the demo's
 CLI = 0.4  # s between two calls of `tms` that wait for something: each costs 0.05 s of a processor
 WARNINGS = 40  # lines shown of a failed test's mesh
 
-# Found by `--hypothesis-profile=thorough`. No deadline: a busy machine would flip the test.
-settings.register_profile("quick", max_examples=50, deadline=None)
-settings.register_profile("thorough", max_examples=400, deadline=None)
-settings.load_profile("quick")
+examples.register()
 
 
-def pytest_configure() -> None:
-    """Log lines as `event=name key=value`, through the standard library, where pytest hears them."""
+def pytest_addoption(parser: pytest.Parser) -> None:
+    turns.add_option(parser)
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Which turn it is; log lines as `event=name key=value`, through the standard library, where pytest hears them."""
+    turns.settle(config)
     structlog.configure(
         processors=[structlog.contextvars.merge_contextvars, structlog.processors.LogfmtRenderer(key_order=["event"])],
         logger_factory=structlog.stdlib.LoggerFactory(),
@@ -52,8 +55,16 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> sharing.OneM
     return sharing.OneMesh(config, log) if config.getvalue("dist") == "loadfile" else None
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """What lasts longest comes first; otherwise the order is random."""
+def pytest_report_header(config: pytest.Config) -> str:
+    return f"turn: {config.option.turn or 'all'} of {turns.TURNS}"
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """What lasts longest comes first; otherwise the order is random. Some tests come by turns."""
+    if config.option.turn is not None:
+        late = turns.waiting(items, int(config.option.turn))
+        config.hook.pytest_deselected(items=list(late))
+        items[:] = [item for item in items if item not in late]
     items.sort(key=sharing.turn)
 
 

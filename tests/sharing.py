@@ -16,12 +16,15 @@ TESTS = Path(__file__).resolve().parent
 MESH, BROWSER_MESH = "the mesh of the test run", "the mesh of the test run, with a browser"
 PROCESSES = ("tests/browser/", "tests/docker/", "tests/replay/test_replay", "tests/ros/", "tests/system/")
 LONGEST = (
-    "test_receipts", "test_earthwork", "test_every_subtask", "test_shared_places",
-    "test_v6_tasks", "test_several_losses", "test_power_cut",
-    "test_areas", "test_losses", "test_official_tasks", "test_sensing", "test_mc", "test_login", "test_mc_losses",
-    "test_readme", "test_stand_in", "test_rp_sim", "test_leaf_forms", "test_ur_crowd",
-    "test_version6_planner", "test_stop", "test_refusals", "test_faults", "test_made_up",
-    "test_sim_reports",
+    "test_v6_tasks", "test_every_subtask", "test_receipts", "test_official_tasks", "test_console", "test_areas",
+    "test_several_losses", "test_earthwork", "test_power_cut", "test_shared_places", "test_rp_sim", "test_losses",
+    "test_mc", "test_mesh", "test_sensing", "test_made_up", "test_mc_losses", "test_login", "test_ground",
+    "test_leaf_forms", "test_board", "test_stand_in", "test_ur_crowd", "test_accessible", "test_stop",
+    "test_views", "test_version6_planner", "test_faults", "test_intruders", "test_japanese", "test_readme",
+    "test_sim_reports", "test_roles", "test_extending", "test_db", "test_start_refusals", "test_if",
+    "test_upstream_peers", "test_first_trial", "test_gateway_stops", "test_newcomer", "test_ur", "test_people",
+    "test_observability", "test_refusals", "test_backoff", "test_permission", "test_operasim", "test_tree",
+    "test_paper", "test_phone",
 )  # fmt: skip
 USES_MESH = re.compile(r"^def test_\w+\([^)]*\b(mesh|idle): Mesh", re.MULTILINE)
 OWN_MESH = re.compile(r"^def mesh\(", re.MULTILINE)

@@ -16,7 +16,7 @@ from tms_ur.reason_view import view
 from unit.tms_ur.fakes import NOON
 from yard import RUN, Yard, log_line, serving, shape
 
-pytestmark = pytest.mark.browser
+pytestmark = [pytest.mark.turns, pytest.mark.browser]
 PHONE = 390  # px
 TREE = shape(3, 2)
 # The address of a page, what is clicked on there, and what shows that it is there with its news.

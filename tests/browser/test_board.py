@@ -18,7 +18,7 @@ from tms_ur.reason_view import of_line, view
 from unit.tms_ur.fakes import NOON
 from yard import RUN, Yard, serving, shape
 
-pytestmark = pytest.mark.browser
+pytestmark = [pytest.mark.turns, pytest.mark.browser]
 XML = "<root><Sequence><L model_name='ic120'/><L model_name='zx200'/></Sequence></root>"
 
 

@@ -306,6 +306,7 @@ def test_a_lost_server_is_shown_and_heals(page: Page, address: str, idle: Mesh) 
     expect(page.locator("#list_tasks li").first).to_be_visible()
 
 
+@pytest.mark.turns
 def test_the_stop_of_a_seventh_page_is_not_kept_waiting(page: Page, address: str, idle: Mesh) -> None:
     """A browser has six connections to a server over all its pages: those that nobody looks at must hold none."""
     others = [page.context.new_page() for _ in range(6)]
@@ -359,6 +360,7 @@ def test_both_languages_and_the_choice_is_remembered(page: Page, address: str, m
     expect(page.locator("#stop")).to_have_text("ソフト停止")
 
 
+@pytest.mark.turns
 @pytest.mark.parametrize("name", [*PAGES, "panel"])
 def test_accessible_and_large_enough_for_fingers(page: Page, address: str, mesh: Mesh, name: str) -> None:
     if name == "panel":

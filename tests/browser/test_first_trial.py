@@ -20,7 +20,7 @@ from tms_ur.reason_view import view
 from unit.tms_ur.fakes import NOON, WrongLine
 from yard import RUN, Yard, serving
 
-pytestmark = pytest.mark.browser
+pytestmark = [pytest.mark.turns, pytest.mark.browser]
 TWO_MACHINES = "<root><Sequence><L model_name='ic120'/><L model_name='zx200'/></Sequence></root>"
 POLLS = 40  # times that a journal tells the same
 

@@ -8,7 +8,7 @@ from browsers import ask
 from conftest import Mesh, wait_until
 from words import ROS, english
 
-pytestmark = [pytest.mark.system, pytest.mark.browser]
+pytestmark = [pytest.mark.turns, pytest.mark.system, pytest.mark.browser]
 # Texts that a person sees now; a tree shows names that its author has given.
 VISIBLE = """() => {
     const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT), found = [];

@@ -16,7 +16,7 @@ from tms_config.config import load_site
 from tms_runtime import environment
 from tms_ur.access import hashed
 
-pytestmark = [pytest.mark.ros, pytest.mark.browser]
+pytestmark = [pytest.mark.turns, pytest.mark.ros, pytest.mark.browser]
 LIMIT = 60.0  # s for whatever must happen at all
 PASSWORD = "open-sesame"
 

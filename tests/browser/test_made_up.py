@@ -22,7 +22,7 @@ from tms_ur.reason_view import view
 from unit.tms_ur.fakes import NOON
 from yard import RUN, Yard, log_line, serving, shape
 
-pytestmark = pytest.mark.browser
+pytestmark = [pytest.mark.turns, pytest.mark.browser]
 SHAPE = {"paths": ["0"], "names": ["all"], "types": ["Sequence"], "kinds": ["control"], "ports": [""]}
 WITH_TEMPLATE = {  # a task that calls the template Dig in its second node
     "paths": ["0", "0.0", "0.1"], "names": ["all", "own", "called"],

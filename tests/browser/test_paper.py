@@ -11,7 +11,7 @@ from tms_ur.models import Event, Host, Place, Process
 from unit.tms_ur.fakes import NOON
 from yard import Yard, serving, shape
 
-pytestmark = pytest.mark.browser
+pytestmark = [pytest.mark.turns, pytest.mark.browser]
 SHEET = {"width": 700, "height": 1000}  # px, about A4 without margins
 PRESSED = "button, input, select, a.button, nav, #stop"
 PRINT = "dispatchEvent(new Event('beforeprint'))"  # as a browser does before it takes the page

@@ -9,7 +9,7 @@ from playwright.sync_api import Page, expect
 from people_rig import MACHINE, WALK, Site, people_site
 from tms_config.config import load_site
 
-pytestmark = [pytest.mark.browser, pytest.mark.timeout(300)]
+pytestmark = [pytest.mark.turns, pytest.mark.browser, pytest.mark.timeout(300)]
 
 
 @pytest.fixture(scope="module")

@@ -11,7 +11,7 @@ from tms_ur.models import Event, Run, Task
 from unit.tms_ur.fakes import NOON
 from yard import Yard, serving
 
-pytestmark = pytest.mark.browser
+pytestmark = [pytest.mark.turns, pytest.mark.browser]
 WIDTH = 390  # px
 TARGET = 44  # px
 RUNS = 12  # more than a screen shows

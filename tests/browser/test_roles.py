@@ -16,7 +16,7 @@ from tms_ur.reason_view import of_line, view
 from unit.tms_ur.fakes import NOON
 from yard import RUN, Yard, serving
 
-pytestmark = pytest.mark.browser
+pytestmark = [pytest.mark.turns, pytest.mark.browser]
 PASSWORD = "open-sesame"
 LOOKS = {"board": "#list_interrupted li", "tasks": "#list_stored tr", "data": "#list_records tr", "map": "#map_box",
          "system": "#list_processes tr"}  # fmt: skip

@@ -12,7 +12,7 @@ from tms_ur.models import Event
 from unit.tms_ur.fakes import NOON
 from yard import RUN, Yard, serving, shape
 
-pytestmark = pytest.mark.browser
+pytestmark = [pytest.mark.turns, pytest.mark.browser]
 BRANCHES, LEAVES = 27, 9  # 271 nodes, as the largest task of the field has
 
 

@@ -19,7 +19,7 @@ from tms_ur.models import Event, Place, Task
 from unit.tms_ur.fakes import NOON
 from yard import RUN, Yard, serving, shape
 
-pytestmark = pytest.mark.browser
+pytestmark = [pytest.mark.turns, pytest.mark.browser]
 LEAF = '<Action ID="LeafNodeZx200" model_name="zx200" subtask_name="dig" record_name="{record}"/>'
 TEXTS = {4: LEAF.format(record="OLD"), 5: LEAF.format(record="NEW") + "<AlwaysSuccess/>"}
 PLACES = ("board", "tree", "map", "map/3d", "history/r-1", "work", "data", "system", "tasks", "editor/4", "components")

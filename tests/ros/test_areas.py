@@ -24,7 +24,7 @@ from tms_control.from_above import from_above
 from tms_ros.goals import Outcome
 from tms_ros.node import Ros
 
-pytestmark = [pytest.mark.ros, pytest.mark.timeout(600)]
+pytestmark = [pytest.mark.turns, pytest.mark.ros, pytest.mark.timeout(600)]
 MACHINE = "ic120"
 FRONT, REAR = 2.0, 3.6  # m, from its base
 HISTORIES = int(os.environ.get("TMS_AREA_HISTORIES", "5"))

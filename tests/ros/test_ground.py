@@ -26,6 +26,7 @@ from tms_soil.surface import Heights
 
 # At real speed: a fast stand-in moves far while a busy PC lets tms:ground wait; soil is not followed over such gaps.
 pytestmark = [
+    pytest.mark.turns,
     pytest.mark.ros,
     pytest.mark.filterwarnings("ignore:module 'sre_:DeprecationWarning"),  # a parser that the ROS wheels bring
 ]

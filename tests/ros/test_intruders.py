@@ -12,7 +12,7 @@ from conftest import rearm, wait_until
 from people_rig import MACHINE, NEAR, OUTSIDE, WALK, Site, people_site
 from tms_machine import stamps
 
-pytestmark = [pytest.mark.ros, pytest.mark.timeout(300)]
+pytestmark = [pytest.mark.turns, pytest.mark.ros, pytest.mark.timeout(300)]
 
 
 @pytest.fixture(scope="module")

@@ -22,6 +22,7 @@ from tms_reason import wire
 from tms_ros.goals import Outcome
 
 pytestmark = [
+    pytest.mark.turns,
     pytest.mark.ros,
     pytest.mark.filterwarnings("ignore:module 'sre_:DeprecationWarning"),  # a parser that the ROS wheels bring
 ]

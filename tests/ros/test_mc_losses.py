@@ -13,6 +13,7 @@ from operasim_rig import OperaSim, operasim
 from tms_ros.goals import Outcome
 
 pytestmark = [
+    pytest.mark.turns,
     pytest.mark.ros,
     pytest.mark.filterwarnings("ignore:module 'sre_:DeprecationWarning"),  # a parser that the ROS wheels bring
 ]

@@ -186,6 +186,7 @@ LIES: list[dict[str, Any]] = [
 ]  # fmt: skip
 
 
+@pytest.mark.turns
 @pytest.mark.parametrize("lie", LIES, ids=lambda lie: next(iter(lie)))
 def test_a_machine_that_coasts_and_lies_is_not_believed(machine: Machine, lie: dict[str, Any]) -> None:
     """It goes on for 3 s after the cancel, and says something else."""

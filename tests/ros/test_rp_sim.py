@@ -57,6 +57,7 @@ from tms_rp.reasons import (
 from tms_runtime import environment
 
 pytestmark = [
+    pytest.mark.turns,
     pytest.mark.ros,
     pytest.mark.filterwarnings("ignore:module 'sre_:DeprecationWarning"),  # a parser that the ROS wheels bring
 ]

@@ -31,6 +31,7 @@ from tms_ros.packing import pack
 from words import words
 
 pytestmark = [
+    pytest.mark.turns,
     pytest.mark.ros,
     pytest.mark.filterwarnings("ignore:module 'sre_:DeprecationWarning"),  # a parser that the ROS wheels bring
 ]

@@ -27,7 +27,7 @@ from tms_reason.wire import to_line
 from tms_ros.goals import Outcome
 from tms_ros.node import Ros
 
-pytestmark = [pytest.mark.ros, pytest.mark.timeout(300)]
+pytestmark = [pytest.mark.turns, pytest.mark.ros, pytest.mark.timeout(300)]
 JOINTS = ["swing_joint", "boom_joint", "arm_joint", "bucket_joint", "bucket_end_joint"]
 START = [0.0, -0.8029, 1.9897, 0.8029, 0.0]  # rad
 STOPPED = (

@@ -22,7 +22,7 @@ from tms_config.config import Site, load_site
 from tms_config.processes import find
 from tms_ros.node import Ros
 
-pytestmark = pytest.mark.ros
+pytestmark = [pytest.mark.turns, pytest.mark.ros]
 MANY = 1000
 
 

@@ -14,7 +14,7 @@ from test_stop import state_of
 
 from conftest import CLI, NO_CONSOLE, PROJECT, Mesh, ports_of, running, site_data, wait_until
 
-pytestmark = [pytest.mark.system, pytest.mark.timeout(600)]
+pytestmark = [pytest.mark.turns, pytest.mark.system, pytest.mark.timeout(600)]
 SPEED = 10.0  # times real time
 VOLUME = float(os.environ.get("TMS_EARTH", "12"))  # m3 as it lay: three loads
 WIDE = ("area_x=[-22.5, -12.5, -12.5, -22.5]", "area_y=[-18.0, -18.0, -2.0, -2.0]")  # the sample's has about 35 m3

@@ -76,6 +76,7 @@ def machine_mesh(model: str, own_domain: int, tmp_path: Path) -> Iterator[Mesh]:
         yield mesh
 
 
+@pytest.mark.turns
 def test_every_subtask_runs_once(model: str, machine_mesh: Mesh, tmp_path: Path) -> None:
     machine_mesh.tms("param", "load", str(PROJECT / "configs" / "parameters" / f"{model}.yaml"))
     for number, tree in enumerate(trees(model, instance(model)), 1):

@@ -177,6 +177,7 @@ def copy(own_domain: int, tmp_path: Path) -> Iterator[Copy]:
         yield made
 
 
+@pytest.mark.turns
 def test_one_of_each_is_added_and_works(copy: Copy, tmp_path: Path) -> None:
     copy.tms("param", "set", "zx200_2/high", "--create", "--type", "static", "boom=-1.0")
     (tmp_path / "tree.xml").write_text(TREE)

@@ -14,7 +14,7 @@ from conftest import NO_CONSOLE, PROJECT, Mesh, mesh_apart, node_in, running, wa
 from tms_ros.goals import Outcome
 from upstream_peers import ABORTED, SUCCEEDED, ask, asking, foreign_server
 
-pytestmark = pytest.mark.system
+pytestmark = [pytest.mark.turns, pytest.mark.system]
 MACHINES = {"mst110cr": "v6a", "mst110cr_2": "v6b"}
 SITE = {
     "machines": {name: {"model": "mst110cr", "start": [10.0, 9.0 * row, 0.0]} for row, name in enumerate(MACHINES)},

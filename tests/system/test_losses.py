@@ -17,7 +17,7 @@ from tms_config.config import Site, load_site
 from tms_host.supervisor import Supervisor
 from tms_ros.node import Ros
 
-pytestmark = [pytest.mark.system, pytest.mark.timeout(300)]
+pytestmark = [pytest.mark.turns, pytest.mark.system, pytest.mark.timeout(300)]
 
 
 @pytest.mark.parametrize("name", ["zx200:rp", "zx200:rc"])

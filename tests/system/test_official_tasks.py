@@ -43,6 +43,7 @@ def outcome(mesh: Mesh, file: Path) -> dict[str, str]:
     return answer
 
 
+@pytest.mark.turns
 @pytest.mark.parametrize("file", OFFICIAL, ids=lambda path: path.stem)
 def test_official_task(yard: Mesh, file: Path) -> None:
     text = file.read_text(encoding="utf-8")
@@ -55,6 +56,7 @@ def test_official_task(yard: Mesh, file: Path) -> None:
     assert answer["outcome"] == "success", answer
 
 
+@pytest.mark.turns
 def test_an_excavator_and_a_truck_wait_for_each_other(yard: Mesh, tmp_path: Path) -> None:
     aside = tmp_path / "aside.xml"
     aside.write_text(ASIDE)

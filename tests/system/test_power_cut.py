@@ -26,7 +26,7 @@ from programs import Program, running_tms
 from tms_ros.node import Ros
 from words import words
 
-pytestmark = pytest.mark.system
+pytestmark = [pytest.mark.turns, pytest.mark.system]
 CUTS = int(os.environ.get("TMS_POWER_CUTS", "3"))
 STALL = 2.0  # s
 STARVED, ATTEMPTS = 3.0, 3  # s that a thread waits for a processor: DDS drops who is silent for 5

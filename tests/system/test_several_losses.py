@@ -120,6 +120,7 @@ def stopped_after(controller: Controller, goal: bytes, capsys: pytest.CaptureFix
         print(f"\nloss to stop: {time.monotonic() - begun:.2f} s")
 
 
+@pytest.mark.turns
 @pytest.mark.parametrize(
     "names",
     [["zx200:rc"], ["zx200:rc", "tms:ts"], ["zx200:rc", "tms:ts", "zx200:rp", "subtasks"]],
@@ -134,6 +135,7 @@ def test_a_machine_whose_processes_are_killed_is_stopped(
             wait_until(lambda: controller.emergency, 30, "emg_stop, as the run is lost, too")
 
 
+@pytest.mark.turns
 @pytest.mark.parametrize("names", [["zx200:rc"], ["zx200:rc", "tms:ts"]], ids=lambda names: "+".join(names))
 def test_a_machine_whose_processes_are_frozen_is_stopped(
     slow: tuple[Mesh, Ros], names: list[str], capsys: pytest.CaptureFixture[str]
@@ -148,6 +150,7 @@ def test_a_machine_whose_processes_are_frozen_is_stopped(
         )
 
 
+@pytest.mark.turns
 @pytest.mark.parametrize("names", [["supervisord"], ["supervisord", "tms:ts"]], ids=lambda names: "+".join(names))
 def test_without_supervisord_the_gateway_stops_the_machine_before_it_ends(
     slow: tuple[Mesh, Ros], names: list[str], capsys: pytest.CaptureFixture[str]

@@ -16,8 +16,8 @@ from conftest import CLI, NO_CONSOLE, Mesh, mesh_apart, node_in, wait_until
 from tms_config.config import load_site
 from tms_machine.places import Places as Poses
 
-pytestmark = [pytest.mark.system, pytest.mark.timeout(300 + 60 * int(os.environ.get("TMS_ROUNDS", "5")))]
 ROUNDS = int(os.environ.get("TMS_ROUNDS", "5"))
+pytestmark = [pytest.mark.turns, pytest.mark.system, pytest.mark.timeout(300 + 60 * ROUNDS)]
 CROSSING = 40.0  # s that one drive may take at most, with its wait for the other truck
 LANES = {"ic120_1": -6.0, "ic120_2": 6.0}  # m, y
 ROAD = (10.0, 11.5)  # m, x; as wide as both lanes

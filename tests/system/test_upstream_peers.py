@@ -8,7 +8,7 @@ import pytest
 from conftest import Mesh
 from upstream_peers import ABORTED, SUCCEEDED, ask, foreign_server
 
-pytestmark = pytest.mark.system
+pytestmark = [pytest.mark.turns, pytest.mark.system]
 TREE = (
     '<root main_tree_to_execute="T"><BehaviorTree ID="T"><Action ID="LeafNodeZx200" model_name="zx200" '
     'record_name="a_record_of_theirs" subtask_name="{}"/></BehaviorTree></root>'

@@ -55,6 +55,7 @@ def goals(mesh: Mesh, run: str) -> list[list[str]]:
     return found
 
 
+@pytest.mark.turns
 @pytest.mark.parametrize("row", EXPECTED, ids=[row["file"].removesuffix(".xml") for row in EXPECTED])
 def test_a_task_runs_to_its_end(yard: Mesh, row: dict[str, Any], tmp_path: Path) -> None:
     yard.tms("param", "load", str(PROJECT / "configs" / "parameters" / "version6.yaml"))  # flags as at the begin

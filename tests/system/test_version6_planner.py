@@ -9,7 +9,7 @@ import pytest
 from conftest import NO_CONSOLE, Mesh, mesh_apart, running, wait_until
 from upstream_peers import ABORTED, SUCCEEDED, ask, foreign_server
 
-pytestmark = pytest.mark.system
+pytestmark = [pytest.mark.turns, pytest.mark.system]
 FORM = "plans"
 SITE = {
     "machines": {

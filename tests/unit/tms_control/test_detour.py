@@ -12,6 +12,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from examples import examples
 from random_grounds import random_ground, random_pose
 from tms_config.config import CONFIGS
 from tms_config.models import MachineModel
@@ -28,7 +29,7 @@ from tms_reason.reason import Reason
 PACE = Pace(forward=1.0, turn=0.24)
 SIDES = FRONT, BACK, LEFT, RIGHT = 2.0, -3.6, 1.8, -1.35
 TRUCK = Outline.rectangle(*SIDES)
-SCENES = 40 if settings.default is None or settings.default.max_examples <= 50 else 2000
+SCENES = examples(40, 2000)
 
 
 def area(name: str, *corners: tuple[float, float], growth: float = 0.0) -> Body:

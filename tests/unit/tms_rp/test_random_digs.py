@@ -11,6 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from examples import examples
 from random_scenes import random_scene
 from tms_config.models import Box
 from tms_reason.errors import SubtaskFailed
@@ -27,7 +28,7 @@ from unit.tms_rp.test_blending import beyond
 from unit.tms_rp.test_ways_in_random_scenes import MODEL, WAYS, bodies, dense, free_pose, of_box, touch, touched
 
 BACKHOE = Backhoe(MODEL)
-CYCLES = 25 if settings.default is None or settings.default.max_examples <= 50 else 1000
+CYCLES = examples(25, 1000)
 LATE = [0.0 if one.passive else MODEL.response[name].dead_time + MODEL.response[name].lag
         for name, one in MODEL.joints.items()]  # fmt: skip
 

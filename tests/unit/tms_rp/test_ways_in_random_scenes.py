@@ -15,6 +15,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from examples import examples
 from random_scenes import random_heap, random_pose, random_scene
 from tms_config.config import CONFIGS
 from tms_config.models import Box, MachineModel
@@ -29,7 +30,7 @@ from tms_rp.ways import Ways
 
 MODEL = parse(CONFIGS / "machines" / "zx200.yaml", MachineModel)
 WAYS = Ways(MODEL, load("backhoe"))
-SCENES = 200 if settings.default is None or settings.default.max_examples <= 50 else 5000
+SCENES = examples(200, 5000)
 DENSE = 0.005  # rad
 GROUND = Box(min=(-20.0, -20.0, -1.0), max=(20.0, 20.0, 0.0))
 ARM = ("boom_link", "arm_link", "bucket_link")

@@ -12,11 +12,12 @@ from schemathesis.specs.openapi.checks import (
     status_code_conformance,
 )  # fmt: skip
 
+from examples import examples
 from unit.tms_ur.fakes import FakeSiteClient, app
 
 schema = schemathesis.openapi.from_asgi("/openapi.json", app(FakeSiteClient()), headers={"Host": "localhost"})
 BESIDE_THE_STREAM = schema.exclude(path="/api/events")  # it has no end
-EXAMPLES = 15
+EXAMPLES = examples(15, 100)
 CHECKS = [
     not_a_server_error, status_code_conformance, content_type_conformance, response_headers_conformance,
     response_schema_conformance, negative_data_rejection,
