@@ -140,17 +140,17 @@ restart: setup ## restart one process (P=name)
 test test-fast: export PYTHONDONTWRITEBYTECODE :=
 # pytest keeps the assertions that it has rewritten: its next start takes half as long
 
-test: setup ## tests that a laptop can run; long ones come by turns, each day others (TURN=1, 2, 3, 4; make nightly takes all)
+test: setup ## tests that a laptop can run; long ones come by turns, each day others (TURN=1 to 4, or all)
 	@DOCKER=$(DOCKER) sh deploy/system-packages.sh test
 	@$(NPM) test
 	$(PY) -m pytest --turn=$(or $(TURN),today) -n 3 --dist loadfile --no-loadscope-reorder tests || { \
 	  echo "again, alone: what passes now was disturbed by other tests on this PC, or is not reliable: both are told"; \
 	  $(PY) -m pytest --last-failed --last-failed-no-failures none -rp tests; }
 
-test-fast: setup ## unit, contract and conformance tests: no ROS processes, two minutes (WORKERS=2)
+test-fast: setup ## unit, contract and conformance tests without long ones: no ROS processes, two minutes (WORKERS=2)
 	@DOCKER=$(DOCKER) sh deploy/system-packages.sh test
 	@$(NPM) test
-	$(PY) -m pytest -q --hypothesis-profile=fast -n $(WORKERS) tests/unit tests/contract tests/conformance
+	$(PY) -m pytest -q --hypothesis-profile=fast -m "not turns" -n $(WORKERS) tests/unit tests/contract tests/conformance
 
 lint: setup ## ruff, mypy, import-linter; Biome and tsc
 	@$(NPM) run lint
@@ -197,8 +197,9 @@ coverage: setup ## unit tests take every branch of the decisions and proofs
 	$(PY) -m coverage run --data-file=$(VENV)/coverage --branch --source tms_decision,tms_proof -m pytest -q tests/unit/tms_decision tests/unit/tms_proof tests/unit/tms_ts/test_interrupted.py
 	$(PY) -m coverage report --data-file=$(VENV)/coverage --show-missing --skip-covered --fail-under=100
 
-nightly: setup ## what takes hours: properties with 400 examples, 100,000 schedules, all mutants, mutmut, replays and 30 power cuts (as root), 60 m3 of earth with kills, 50 rounds of two trucks and a road, a long drill
-	$(PY) -m pytest -q -n $(WORKERS) --hypothesis-profile=thorough tests/unit
+nightly: setup ## what takes hours: all tests, properties with 400 examples, 100,000 schedules, all mutants, mutmut, replays and 30 power cuts (as root), 60 m3 of earth with kills, 50 rounds of two trucks and a road, a long drill
+	@$(MAKE) test TURN=all
+	$(PY) -m pytest -q -n $(WORKERS) --hypothesis-profile=thorough tests/unit tests/fuzz
 	@$(MAKE) coverage
 	@$(MAKE) simulate SCHEDULES=100000
 	@$(MAKE) areas

@@ -56,15 +56,14 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> sharing.OneM
 
 
 def pytest_report_header(config: pytest.Config) -> str:
-    return f"turn: {config.option.turn or 'all'} of {turns.TURNS}"
+    return f"turn: {config.option.turn} of {turns.TURNS}"
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """What lasts longest comes first; otherwise the order is random. Some tests come by turns."""
-    if config.option.turn is not None:
-        late = turns.waiting(items, int(config.option.turn))
-        config.hook.pytest_deselected(items=list(late))
-        items[:] = [item for item in items if item not in late]
+    late = turns.waiting(items, config.option.turn)
+    config.hook.pytest_deselected(items=list(late))
+    items[:] = [item for item in items if item not in late]
     items.sort(key=sharing.turn)
 
 

@@ -13,8 +13,5 @@ def register() -> None:
 
 
 def examples(usual: int, thorough: int) -> int:
-    """So many in `make test` and `make nightly`; a fifth of the first in `make test-fast`."""
-    count = USUAL if settings.default is None else settings.default.max_examples
-    if count > USUAL:
-        return thorough
-    return usual if count > FAST else max(1, usual // 5)
+    """So many in `make test` and in `make nightly`."""
+    return thorough if settings.default is not None and settings.default.max_examples > USUAL else usual

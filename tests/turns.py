@@ -1,4 +1,4 @@
-"""Long tests come by turns: `make test` takes some of them, each day others; without `--turn` all of them run.
+"""Long tests come by turns: `make test` takes some of them, each day others, and `make test TURN=all` all of them.
 
 Where a module has the mark `turns`, it comes as a whole: most of what it costs is its mesh. Where a test has it, its
 cases are shared out.
@@ -14,13 +14,13 @@ import pytest
 import sharing
 
 TURNS = 4
-TODAY = "today"
+TODAY, ALL = "today", "all"
 T = TypeVar("T")
 
 
 def add_option(parser: pytest.Parser) -> None:
     """`--turn`, of pytest."""
-    parser.addoption("--turn", help=f"long tests of this turn only: 1 to {TURNS}, or `{TODAY}`; default: all of them")
+    parser.addoption("--turn", default=ALL, help=f"long tests of this turn only: 1 to {TURNS}, or `{TODAY}`")
 
 
 def settle(config: pytest.Config) -> None:
@@ -28,13 +28,15 @@ def settle(config: pytest.Config) -> None:
     word = config.option.turn
     if word == TODAY:
         config.option.turn = str(date.today().toordinal() % TURNS + 1)
-    elif word is not None and word not in map(str, range(1, TURNS + 1)):
-        raise pytest.UsageError(f"--turn={word}: {TODAY}, or a number from 1 to {TURNS}")
+    elif word != ALL and word not in map(str, range(1, TURNS + 1)):
+        raise pytest.UsageError(f"--turn={word}: {TODAY}, {ALL}, or a number from 1 to {TURNS}")
 
 
-def waiting(items: Sequence[pytest.Item], turn: int) -> set[pytest.Item]:
-    """Those that do not come in this turn."""
-    whole, shared = list[pytest.Item](), list[pytest.Item]()
+def waiting(items: Sequence[pytest.Item], word: str) -> set[pytest.Item]:
+    """Those that do not come in the turn that `--turn` names."""
+    if word == ALL:
+        return set()
+    turn, whole, shared = int(word), list[pytest.Item](), list[pytest.Item]()
     for item in items:
         if item.get_closest_marker("turns") is not None:
             (whole if _of_module(item) else shared).append(item)

@@ -23,7 +23,7 @@ from tms_runtime.priority import undisturbed
 if TYPE_CHECKING:
     from tms_ros.node import Ros
 
-CALL_LIMIT = 5.0  # s
+CALL_LIMIT = 10.0  # s; on a full PC, discovery of a process that is there has taken more than 5
 LATCHED_LIMIT = 5.0  # s for the latched state of a module to arrive
 leaving = ExitStack()  # leaves the ROS graph; closed at the end of this process, since DDS sometimes hangs there
 

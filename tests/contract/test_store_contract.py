@@ -362,6 +362,7 @@ def test_a_record_of_several_models_is_one(db: store.Db) -> None:
     assert code_of(lambda: parameters.set("truck_2", "road", RecordEdit({"n": 4}))) == "STATIC_RECORD"
 
 
+@pytest.mark.turns
 def test_eight_writers_that_swap_lose_no_update(shared_db: store.Db) -> None:
     parameters = Parameters(shared_db)
     parameters.set("", "COUNT", RecordEdit({"n": 0}, "dynamic"), create=True)

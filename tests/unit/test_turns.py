@@ -15,7 +15,7 @@ def pytest_configure(config):
     turns.settle(config)
 
 def pytest_collection_modifyitems(config, items):
-    late = turns.waiting(items, int(config.option.turn)) if config.option.turn else set()
+    late = turns.waiting(items, config.option.turn)
     items[:] = [item for item in items if item not in late]
 """
 LONG = "import pytest\npytestmark = [pytest.mark.turns]\ndef test_one(): pass\ndef test_two(): pass"
@@ -47,6 +47,7 @@ def collected(project: pytest.Pytester, *words: str) -> list[str]:
 
 def test_each_comes_in_one_turn(project: pytest.Pytester) -> None:
     every = collected(project)
+    assert every == collected(project, "--turn=all")
     assert len(every) == 18
     taken = [collected(project, f"--turn={number}") for number in range(1, turns.TURNS + 1)]
     short = "test_f.py::test_short"
@@ -68,4 +69,4 @@ def test_today_is_one_of_them(project: pytest.Pytester) -> None:
 def test_a_turn_that_is_none_is_refused(project: pytest.Pytester, word: str) -> None:
     told = project.runpytest_inprocess(f"--turn={word}")
     assert told.ret == pytest.ExitCode.USAGE_ERROR
-    told.stderr.fnmatch_lines([f"*--turn={word}: today, or a number from 1 to {turns.TURNS}*"])
+    told.stderr.fnmatch_lines([f"*--turn={word}: today, all, or a number from 1 to {turns.TURNS}*"])

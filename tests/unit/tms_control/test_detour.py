@@ -93,6 +93,7 @@ def in_polygon(x: np.ndarray, y: np.ndarray, corners: np.ndarray) -> np.ndarray:
     return np.abs(turned) > math.pi
 
 
+@pytest.mark.turns
 @pytest.mark.timeout(3600)
 @settings(max_examples=SCENES)
 @given(st.integers(0, 10**9), st.sampled_from([0.0, -0.5]))

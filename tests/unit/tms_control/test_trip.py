@@ -413,6 +413,7 @@ def test_what_comes_into_the_way_counts_for_no_attempt() -> None:
     assert trip.verdict == ARRIVED and at(machine, Pose(60, 0, 0))
 
 
+@pytest.mark.turns
 def test_where_it_cannot_get_around_it_tries_three_times_and_tells_what_is_in_the_way() -> None:
     machine = DrivenTracks("ic120")
     walls = [

@@ -109,6 +109,7 @@ def test_nothing_of_a_thin_or_torn_surface_is_lost(seed: int) -> None:
     assert away(vertices[faces].mean(axis=1), found) <= found.off + 1e-9
 
 
+@pytest.mark.turns
 def test_a_million_triangles_are_simplified_within_the_budget() -> None:
     vertices, faces = heap(707)
     assert len(faces) > 999_000

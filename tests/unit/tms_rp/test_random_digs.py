@@ -62,6 +62,7 @@ def check_touch(plan: Plan, scene: Scene, top: float | None) -> None:
         assert not deep.any() or np.ptp(poses[deep, 0]) < 0.1  # at one angle of the upper body
 
 
+@pytest.mark.turns
 @pytest.mark.timeout(3600)  # `make nightly` looks at 1,000
 @settings(max_examples=CYCLES)
 @given(st.integers(0, 10**9))

@@ -149,6 +149,7 @@ def beyond_limits(made: Trajectory) -> list[str]:
     return found
 
 
+@pytest.mark.turns
 @pytest.mark.timeout(3600)  # `make nightly` looks at 5,000
 @settings(max_examples=SCENES)
 @example(17317)  # it begins a few centimetres beside a box

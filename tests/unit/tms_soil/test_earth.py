@@ -61,6 +61,7 @@ def test_a_stand_in_that_lives_fast_jumps_nowhere() -> None:
     assert moved_by(earth, "zx200") > 0.0
 
 
+@pytest.mark.turns
 def test_seven_to_nine_passes_fill_a_truck() -> None:
     earth = loading_site()
     before = earth.mass()

@@ -153,6 +153,7 @@ def test_nothing_left_is_a_refusal(yard: Yard, records: Records) -> None:
         execute(ChooseDigPoint, Machine("zx200", yard), records)
 
 
+@pytest.mark.turns
 def test_a_dig_that_brings_nothing_is_not_tried_for_ever(yard: Yard, records: Records) -> None:
     """The ground promises soil that the arm does not get: it digs elsewhere, and at last the job is done."""
     records.of["", "EARTHWORK"] |= {"volume": 9.0, "counted": 0}

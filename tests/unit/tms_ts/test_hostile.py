@@ -101,6 +101,7 @@ UNUSED = {
 }
 
 
+@pytest.mark.turns
 @pytest.mark.parametrize("text", UNUSED.values(), ids=UNUSED)
 def test_warnings_about_what_is_not_used_are_bounded(text: str) -> None:
     """Each of them looks for a near name, which 160 000 times took half a minute."""
