@@ -15,17 +15,19 @@ from xdist.workermanage import WorkerController
 TESTS = Path(__file__).resolve().parent
 MESH, BROWSER_MESH = "the mesh of the test run", "the mesh of the test run, with a browser"
 PROCESSES = ("tests/browser/", "tests/docker/", "tests/replay/test_replay", "tests/ros/", "tests/system/")
-LONGEST = (
-    "test_v6_tasks", "test_every_subtask", "test_receipts", "test_official_tasks", "test_console", "test_areas",
-    "test_several_losses", "test_earthwork", "test_power_cut", "test_shared_places", "test_rp_sim", "test_losses",
-    "test_mc", "test_mesh", "test_sensing", "test_made_up", "test_mc_losses", "test_login", "test_ground",
-    "test_leaf_forms", "test_board", "test_stand_in", "test_ur_crowd", "test_accessible", "test_stop",
-    "test_views", "test_version6_planner", "test_faults", "test_intruders", "test_japanese", "test_readme",
-    "test_sim_reports", "test_roles", "test_extending", "test_db", "test_start_refusals", "test_if",
-    "test_upstream_peers", "test_first_trial", "test_gateway_stops", "test_newcomer", "test_ur", "test_people",
-    "test_observability", "test_refusals", "test_backoff", "test_permission", "test_operasim", "test_tree",
-    "test_paper", "test_phone",
-)  # fmt: skip
+COSTS = {  # s of a processor, where a file takes many
+    "test_v6_tasks": 229, "test_official_tasks": 183, "test_console": 159, "test_earthwork": 149,
+    "test_every_subtask": 145, "test_made_up": 86, "test_several_losses": 78, "test_shared_places": 77,
+    "test_power_cut": 71, "test_losses": 67, "test_sensing": 56, "test_receipts": 51, "test_leaf_forms": 51,
+    "test_mesh": 50, "test_board": 40, "test_rp_sim": 40, "test_areas": 35, "test_login": 34,
+    "test_version6_planner": 33, "test_mc": 31, "test_views": 27, "test_stop": 27, "test_readme": 26,
+    "test_extending": 25, "test_mc_losses": 25, "test_roles": 25, "test_accessible": 22, "test_ground": 19,
+    "test_first_trial": 17, "test_stand_in": 16, "test_ur_crowd": 15, "test_refusals": 14, "test_paper": 13,
+    "test_intruders": 13, "test_newcomer": 12, "test_permission": 12, "test_japanese": 12, "test_tree": 11,
+    "test_phone": 11, "test_people": 11, "test_observability": 11, "test_start_refusals": 10,
+    "test_shared_values": 10, "test_upstream_peers": 9, "test_record_lock": 8, "test_panel": 8, "test_faults": 8,
+    "test_ur": 7, "test_gateway_stops": 7, "test_db": 7,
+}  # fmt: skip
 USES_MESH = re.compile(r"^def test_\w+\([^)]*\b(mesh|idle): Mesh", re.MULTILINE)
 OWN_MESH = re.compile(r"^def mesh\(", re.MULTILINE)
 
@@ -65,7 +67,10 @@ def uses_mesh(file: Path) -> bool:
 def turn(item: pytest.Item) -> int:
     """When a test comes: what lasts longest first, tests of pure logic last."""
     if uses_mesh(item.path):
-        return 0
-    if item.path.stem in LONGEST:
-        return 1 + LONGEST.index(item.path.stem)
-    return 1 + len(LONGEST) + (not starts_processes(item.nodeid))
+        return -max(COSTS.values())
+    return -cost(item.path) if cost(item.path) else 1 + (not starts_processes(item.nodeid))
+
+
+def cost(file: Path) -> int:
+    """Seconds of a processor that the tests of a file take; 0 where they are few."""
+    return COSTS.get(file.stem, 0)

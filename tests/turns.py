@@ -4,18 +4,16 @@ Where a module has the mark `turns`, it comes as a whole: most of what it costs 
 cases are shared out.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from datetime import date
 from pathlib import Path
-from typing import TypeVar
 
 import pytest
 
 import sharing
 
-TURNS = 4
+TURNS = 5
 TODAY, ALL = "today", "all"
-T = TypeVar("T")
 
 
 def add_option(parser: pytest.Parser) -> None:
@@ -40,26 +38,22 @@ def waiting(items: Sequence[pytest.Item], word: str) -> set[pytest.Item]:
     for item in items:
         if item.get_closest_marker("turns") is not None:
             (whole if _of_module(item) else shared).append(item)
-    late = set(_others(sorted({item.path for item in whole}, key=_longest_first), turn))
-    cases = _others(sorted(shared, key=lambda one: one.nodeid), turn)
-    return {item for item in whole if item.path in late} | set(cases)
+    late = [path for path, own in _spread({item.path for item in whole}).items() if own != turn]
+    cases = sorted(shared, key=lambda one: one.nodeid)
+    return {item for item in whole if item.path in late} | {
+        item for place, item in enumerate(cases) if place % TURNS != turn - 1
+    }
+
+
+def _spread(files: set[Path]) -> dict[Path, int]:
+    """A turn for each file, so that all turns cost about the same: the most costly first, to the cheapest turn."""
+    found, costs = dict[Path, int](), dict.fromkeys(range(1, TURNS + 1), 0)
+    for path in sorted(files, key=lambda path: (-sharing.cost(path), path)):
+        found[path] = min(costs, key=lambda turn: costs[turn])
+        costs[found[path]] += max(1, sharing.cost(path))
+    return found
 
 
 def _of_module(item: pytest.Item) -> bool:
     module = item.getparent(pytest.Module)
     return module is not None and any(mark.name == "turns" for mark in module.own_markers)
-
-
-def _longest_first(path: Path) -> tuple[int, str]:
-    known = path.stem in sharing.LONGEST
-    return sharing.LONGEST.index(path.stem) if known else len(sharing.LONGEST), str(path)
-
-
-def _others(all_of_them: Iterable[T], turn: int) -> list[T]:
-    return [one for place, one in enumerate(all_of_them) if _turn(place) != turn]
-
-
-def _turn(place: int) -> int:
-    """To and fro, so that the longest of each round do not all come in the same turn."""
-    step = place % (2 * TURNS)
-    return 1 + min(step, 2 * TURNS - 1 - step)

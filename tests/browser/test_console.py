@@ -160,6 +160,7 @@ def test_the_stop_is_in_reach_everywhere(page: Page, address: str, idle: Mesh) -
     expect(page.locator("#list_stored tr")).to_have_count(stored)  # and nothing was removed
 
 
+@pytest.mark.turns
 def test_a_list_that_comes_late_does_not_get_into_the_next_page(page: Page, address: str, idle: Mesh) -> None:
     open_page(page, address, "system")
     held: list[Route] = []
@@ -192,6 +193,7 @@ def test_one_machine_is_stopped(page: Page, address: str, idle: Mesh) -> None:
     expect(page.locator("#receipts li").filter(has_text=by_local)).to_have_count(1)
 
 
+@pytest.mark.turns
 def test_history_replays_a_stopped_run(page: Page, address: str, idle: Mesh) -> None:
     idle.tms("run", str(SWINGS))
     idle.tms("stop")
@@ -222,6 +224,7 @@ def test_history_replays_a_stopped_run(page: Page, address: str, idle: Mesh) -> 
     expect(page.locator("#motion .plot canvas").first).to_be_visible()
 
 
+@pytest.mark.turns
 def test_a_question_is_answered(page: Page, address: str, idle: Mesh, tmp_path: Path) -> None:
     file = tmp_path / "asking.xml"
     file.write_text(ASKING)
@@ -246,6 +249,7 @@ def test_a_question_is_answered(page: Page, address: str, idle: Mesh, tmp_path: 
     expect(question).to_have_count(0)
 
 
+@pytest.mark.turns
 def test_two_consoles_agree_and_one_run_starts(page: Page, chromium: Browser, address: str, idle: Mesh) -> None:
     other = chromium.new_page(locale="en-GB")
     try:
@@ -322,6 +326,7 @@ def test_the_stop_of_a_seventh_page_is_not_kept_waiting(page: Page, address: str
     expect(card).to_contain_text("Stopped because")
 
 
+@pytest.mark.turns
 def test_a_page_that_is_looked_at_again_shows_nothing_old_as_new(page: Page, address: str, idle: Mesh) -> None:
     open_page(page, address, "board")
     card, lost = page.locator("[data-machine=zx200]"), page.locator("#lost")
@@ -345,6 +350,7 @@ def english(page: Page) -> list[str]:
     return [text for text in left if re.fullmatch(r"[A-Za-z ]{4,}", text) and text not in ("English", "JSON")]
 
 
+@pytest.mark.turns
 def test_both_languages_and_the_choice_is_remembered(page: Page, address: str, mesh: Mesh) -> None:
     open_page(page, address, "board")
     for name in PAGES:
@@ -380,6 +386,7 @@ def test_accessible_and_large_enough_for_fingers(page: Page, address: str, mesh:
     assert small == []
 
 
+@pytest.mark.turns
 def test_keyboard_alone(page: Page, address: str, mesh: Mesh) -> None:
     open_page(page, address, "board")
     expect(page.locator("#list_tasks li").first).to_be_visible()
@@ -393,6 +400,7 @@ def test_keyboard_alone(page: Page, address: str, mesh: Mesh) -> None:
     expect(page.locator("#page")).to_have_attribute("data-page", "data")
 
 
+@pytest.mark.turns
 def test_a_record_is_edited_with_its_type(page: Page, address: str, mesh: Mesh) -> None:
     open_page(page, address, "data")
     before = json.loads(mesh.tms("param", "get", "zx200/release_angle", "--json").stdout)
@@ -434,6 +442,7 @@ def test_a_record_is_edited_with_its_type(page: Page, address: str, mesh: Mesh) 
     assert after["values"] == before["values"] if "values" in before else True
 
 
+@pytest.mark.turns
 def test_a_record_is_made(page: Page, address: str, mesh: Mesh) -> None:
     open_page(page, address, "data")
     expect(page.get_by_role("button", name="Edit zx200/initial_pose", exact=True)).to_be_visible()
@@ -453,6 +462,7 @@ def test_a_record_is_made(page: Page, address: str, mesh: Mesh) -> None:
     mesh.tms("param", "rm", "zx200/made_here")
 
 
+@pytest.mark.turns
 def test_processes_logs_and_restart(page: Page, address: str, mesh: Mesh) -> None:
     open_page(page, address, "system")
     page.get_by_role("button", name="Log of tms:db", exact=True).click()
@@ -464,6 +474,7 @@ def test_processes_logs_and_restart(page: Page, address: str, mesh: Mesh) -> Non
     mesh.wait_ready()
 
 
+@pytest.mark.turns
 def test_the_site_shows_place_and_arm(page: Page, address: str, mesh: Mesh) -> None:
     open_page(page, address, "map")
     expect(page.locator("#map_box [data-machine=zx200]")).to_have_count(1)
@@ -472,12 +483,14 @@ def test_the_site_shows_place_and_arm(page: Page, address: str, mesh: Mesh) -> N
     assert float((arm.first.get_attribute("points") or "").split()[3].split(",")[1]) < -2, "the boom stands up, m"
 
 
+@pytest.mark.turns
 def test_the_editor_offers_the_nodes_of_the_scheduler(page: Page, address: str, mesh: Mesh) -> None:
     page.goto(f"{address}/#editor/new")
     page.get_by_text("zx200", exact=True).click()
     expect(page.get_by_role("button", name="subtask_zx200_change_pose", exact=True)).to_be_visible()
 
 
+@pytest.mark.turns
 def test_the_first_page_is_small(page: Page, address: str, mesh: Mesh) -> None:
     files: list[Request] = []
     page.on("requestfinished", lambda request: None if "/api/" in request.url else files.append(request))

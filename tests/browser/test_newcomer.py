@@ -7,7 +7,7 @@ from playwright.sync_api import Page, expect
 
 from conftest import Mesh
 
-pytestmark = [pytest.mark.system, pytest.mark.browser]
+pytestmark = [pytest.mark.turns, pytest.mark.system, pytest.mark.browser]
 LEAVES = ("swing_left", "swing_right", "swing_left")
 
 

@@ -24,6 +24,7 @@ CHECKS = [
 ]  # fmt: skip
 
 
+@pytest.mark.turns
 @pytest.mark.timeout(300)
 @BESIDE_THE_STREAM.parametrize()
 @settings(

@@ -24,8 +24,8 @@ LEAST = 0.9  # share that the tests must kill
 KILLED = ("killed", "timeout")
 CHANGED = ("src/tms_proof", "src/tms_decision/latch.py")
 TESTED = ("unit/tms_proof", "unit/tms_decision")
-NEEDED = (*TESTED, "unit/conftest.py", "simulation", "conftest.py", "programs.py", "sharing.py", "turns.py", "examples.py", "loaded.py",
-          "forked.py", "words.py")  # fmt: skip
+NEEDED = (*TESTED, "unit/conftest.py", "simulation", "conftest.py", "programs.py", "sharing.py", "turns.py",
+          "examples.py", "loaded.py", "forked.py", "words.py")  # fmt: skip
 SETTINGS = f"""[tool.mutmut]
 source_paths = {list(CHANGED)}
 also_copy = ["src", "configs"]

@@ -9,7 +9,7 @@ from conftest import Mesh
 from tms_ros.node import Ros
 from words import ROS, english
 
-pytestmark = pytest.mark.system
+pytestmark = [pytest.mark.turns, pytest.mark.system]
 
 
 def foreign(mesh: Mesh, *words: str, expect: int = 0) -> list[str]:

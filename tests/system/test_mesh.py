@@ -66,6 +66,7 @@ def test_the_history_tells_every_leaf_in_order(mesh: Mesh) -> None:
     assert rows[-1]["kind"] == "run" and rows[-1]["text"] == "success"
 
 
+@pytest.mark.turns
 def test_four_cycles_send_24_goals(mesh: Mesh) -> None:
     answer = run(mesh, "2")
     assert answer["outcome"] == "success"

@@ -7,7 +7,7 @@ import pytest
 
 from conftest import CLI, Mesh, wait_until
 
-pytestmark = pytest.mark.system
+pytestmark = [pytest.mark.turns, pytest.mark.system]
 FIELD = Path(__file__).resolve().parents[1] / "data" / "field_tasks"
 SWAP = (
     '<root main_tree_to_execute="T"><BehaviorTree ID="T"><Action ID="MongoValueSwap" mongo_record_name="ROAD" '
