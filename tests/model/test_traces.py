@@ -42,6 +42,7 @@ def test_what_the_model_does_not_know_is_left_out_of_a_plan() -> None:
     assert not any(isinstance(one.act, Lie) for seed in SEEDS for one in known(plan(seed)))
 
 
+@pytest.mark.turns
 @pytest.mark.parametrize("seed", SEEDS)
 def test_a_history_of_the_simulation_is_one_of_the_model(reader: Reader, seed: int) -> None:
     words = history(seed)

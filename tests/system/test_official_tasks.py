@@ -9,7 +9,7 @@ import yaml
 
 from conftest import NO_CONSOLE, PROJECT, Mesh, claimed_domain, ports_of, running, site_data
 
-pytestmark = [pytest.mark.system, pytest.mark.timeout(300)]
+pytestmark = [pytest.mark.turns, pytest.mark.system, pytest.mark.timeout(300)]
 TASKS = PROJECT / "configs" / "tasks"
 OFFICIAL = sorted((PROJECT / "tests" / "data" / "field_tasks").glob("task_id*.xml"), key=lambda path: path.name)
 WIDE = "＿"  # the full-width underscore in a machine's name of task 11
@@ -43,7 +43,6 @@ def outcome(mesh: Mesh, file: Path) -> dict[str, str]:
     return answer
 
 
-@pytest.mark.turns
 @pytest.mark.parametrize("file", OFFICIAL, ids=lambda path: path.stem)
 def test_official_task(yard: Mesh, file: Path) -> None:
     text = file.read_text(encoding="utf-8")
@@ -56,7 +55,6 @@ def test_official_task(yard: Mesh, file: Path) -> None:
     assert answer["outcome"] == "success", answer
 
 
-@pytest.mark.turns
 def test_an_excavator_and_a_truck_wait_for_each_other(yard: Mesh, tmp_path: Path) -> None:
     aside = tmp_path / "aside.xml"
     aside.write_text(ASIDE)

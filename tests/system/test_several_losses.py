@@ -16,7 +16,7 @@ from test_mesh import processes, swinging
 from conftest import CLI, PROJECT, Mesh, mesh_apart, running, wait_until
 from tms_ros.node import Ros
 
-pytestmark = [pytest.mark.system, pytest.mark.timeout(300)]
+pytestmark = [pytest.mark.turns, pytest.mark.system, pytest.mark.timeout(300)]
 STATUS = "/zx200/upper_arm_controller/follow_joint_trajectory/_action/status"
 OPEN = (GoalStatus.STATUS_ACCEPTED, GoalStatus.STATUS_EXECUTING)
 STOPPED = (GoalStatus.STATUS_CANCELING, GoalStatus.STATUS_CANCELED)
@@ -120,7 +120,6 @@ def stopped_after(controller: Controller, goal: bytes, capsys: pytest.CaptureFix
         print(f"\nloss to stop: {time.monotonic() - begun:.2f} s")
 
 
-@pytest.mark.turns
 @pytest.mark.parametrize(
     "names",
     [["zx200:rc"], ["zx200:rc", "tms:ts"], ["zx200:rc", "tms:ts", "zx200:rp", "subtasks"]],
@@ -135,7 +134,6 @@ def test_a_machine_whose_processes_are_killed_is_stopped(
             wait_until(lambda: controller.emergency, 30, "emg_stop, as the run is lost, too")
 
 
-@pytest.mark.turns
 @pytest.mark.parametrize("names", [["zx200:rc"], ["zx200:rc", "tms:ts"]], ids=lambda names: "+".join(names))
 def test_a_machine_whose_processes_are_frozen_is_stopped(
     slow: tuple[Mesh, Ros], names: list[str], capsys: pytest.CaptureFixture[str]
@@ -150,7 +148,6 @@ def test_a_machine_whose_processes_are_frozen_is_stopped(
         )
 
 
-@pytest.mark.turns
 @pytest.mark.parametrize("names", [["supervisord"], ["supervisord", "tms:ts"]], ids=lambda names: "+".join(names))
 def test_without_supervisord_the_gateway_stops_the_machine_before_it_ends(
     slow: tuple[Mesh, Ros], names: list[str], capsys: pytest.CaptureFixture[str]

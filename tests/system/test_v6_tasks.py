@@ -17,7 +17,7 @@ from conftest import CLI, NO_CONSOLE, PROJECT, Mesh, claimed_domain, ports_of, r
 from v6_site import MACHINES, RECORDS, filled
 from v6_templates import TASKS
 
-pytestmark = [pytest.mark.system, pytest.mark.timeout(300)]
+pytestmark = [pytest.mark.turns, pytest.mark.system, pytest.mark.timeout(300)]
 SPEED = 40.0  # times real time; the timers of the tasks keep to the wall clock
 EXPECTED = [json.loads(line) for line in (TASKS / "runs.jsonl").read_text(encoding="utf-8").splitlines()]
 SENT = re.compile(r"sent to (\S+), record (.*)")
@@ -55,7 +55,6 @@ def goals(mesh: Mesh, run: str) -> list[list[str]]:
     return found
 
 
-@pytest.mark.turns
 @pytest.mark.parametrize("row", EXPECTED, ids=[row["file"].removesuffix(".xml") for row in EXPECTED])
 def test_a_task_runs_to_its_end(yard: Mesh, row: dict[str, Any], tmp_path: Path) -> None:
     yard.tms("param", "load", str(PROJECT / "configs" / "parameters" / "version6.yaml"))  # flags as at the begin
