@@ -177,9 +177,12 @@ def test_a_list_that_comes_late_does_not_get_into_the_next_page(page: Page, addr
 
 
 def test_one_machine_is_stopped(page: Page, address: str, idle: Mesh) -> None:
-    idle.tms("run", str(SWINGS))
     open_page(page, address, "board")
-    page.get_by_role("button", name="Software stop of zx200", exact=True).click()
+    button = page.get_by_role("button", name="Software stop of zx200", exact=True)
+    expect(button).to_be_visible()  # a full PC takes its time for the page
+    idle.tms("run", str(SWINGS))
+    wait_until(lambda: [run["state"] for run in ask(address, "/api/state")["runs"]] == ["running"], LIMIT, "it runs")
+    button.click()
     expect(page.locator("#stop_report")).to_contain_text("zx200: seen to stand after")
     expect(page.locator("#message")).to_contain_text("Cancelled after")  # how the run has ended
     page.locator("#message a").click()

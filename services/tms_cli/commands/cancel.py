@@ -6,13 +6,14 @@ import click
 
 from tms_cli import session, words
 from tms_cli.commands.runs import MAX_RUNS, as_dict, find_run, has_ended, history, recent
-from tms_cli.reasons import NoRunActive, NotEndedYet, RunHasEnded
+from tms_cli.reasons import NoRunActive, NotEndedYet, RunHasEnded, SchedulerSilent
 from tms_cli.words import say, state
 from tms_config.clock import monotonic, sleep
-from tms_reason.errors import TmsError
+from tms_reason.errors import RosError, TmsError
 
 if TYPE_CHECKING:
     from tms_msg_db.msg import Run
+    from tms_msg_ts.msg import RunState
 
     from tms_ros.node import Ros
 
@@ -21,33 +22,47 @@ CHECK_PERIOD = 0.2  # s
 
 
 def _which(node: "Ros", word: str) -> str:
-    """The id of the run; without the database the given word itself, since a cancel must not depend on the database."""
-    try:
-        runs = history(node, MAX_RUNS)
-    except TmsError:
-        if word == "last":
-            raise
-        return word
-    active = [run for run in runs if not has_ended(run)]
+    """The id of the run, from the scheduler: a cancel must not wait for the database, which knows of ended ones."""
+    from tms_msg_ts.msg import RunStates
+
+    told = session.latched(node, RunStates, "/tms/runs")
+    if told is None:
+        raise RosError(SchedulerSilent(), "NO_ANSWER")
+    active = sorted(told.runs, key=_begun, reverse=True)
     if word == "last" and not active:
         raise TmsError(NoRunActive(), "NO_RUN")
-    run = find_run(active if word == "last" else runs, word)
+    if word == "last" or any(run.run_id.startswith(word) for run in active):
+        return find_run(active, word).run_id
+    return _not_active(node, word)
+
+
+def _begun(run: "RunState") -> tuple[int, int]:
+    return run.started_at.sec, run.started_at.nanosec
+
+
+def _not_active(node: "Ros", word: str) -> str:
+    """The given word itself where the database is away: the scheduler then says what it knows."""
+    try:
+        run = find_run(history(node, MAX_RUNS), word)
+    except RosError:
+        return word
     if has_ended(run):
         raise TmsError(RunHasEnded(run.run_id, run.state), "RUN_ENDED")
     return run.run_id
 
 
 def _wait(node: "Ros", run_id: str) -> "Run":
-    deadline = monotonic() + END_LIMIT
+    """The ended run, as the database has it; one that gives no answer for a while is asked again."""
+    deadline, trouble = monotonic() + END_LIMIT, None
     while monotonic() < deadline:
-        run = recent(node, run_id)
+        try:
+            run, trouble = recent(node, run_id), None
+        except TmsError as error:
+            run, trouble = None, error
         if run is not None and has_ended(run):
             return run
         sleep(CHECK_PERIOD)
-    raise TmsError(
-        NotEndedYet(run_id, END_LIMIT),
-        "STOP_UNCONFIRMED",
-    )
+    raise trouble or TmsError(NotEndedYet(run_id, END_LIMIT), "STOP_UNCONFIRMED")
 
 
 @click.command()

@@ -1,6 +1,7 @@
 """`tms runs`: list runs, newest first."""
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
@@ -12,8 +13,11 @@ from tms_reason.errors import TmsError
 
 if TYPE_CHECKING:
     from tms_msg_db.msg import Run
+    from tms_msg_ts.msg import RunState
 
     from tms_ros.node import Ros
+
+    R = TypeVar("R", Run, RunState)
 
 RECENT = 100
 MAX_RUNS = 10_000  # runs that the database lists at most
@@ -36,8 +40,8 @@ def has_ended(run: "Run") -> bool:
     return live.moment(run.ended_at) is not None
 
 
-def find_run(runs: "list[Run]", word: str) -> "Run":
-    """Find a run by its id, the beginning of it, or `last`.
+def find_run(runs: "Sequence[R]", word: str) -> "R":
+    """Find a run of the database or of the scheduler, newest first, by its id, the beginning of it, or `last`.
 
     Raises:
         TmsError: none or several fit.

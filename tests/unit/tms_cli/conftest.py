@@ -20,6 +20,7 @@ class FakeMesh:
         self.answers: dict[str, Any] = {}
         self.asked: list[tuple[str, dict[str, Any]]] = []
         self.received: dict[str, Callable[[Any], None]] = {}
+        self.told: dict[str, Any] = {}  # what is on latched topics
         self.action: Any = None  # what `peer` returns
 
     def call(self, service_type: Any, name: str, **fields: Any) -> Any:
@@ -38,6 +39,8 @@ class FakeMesh:
 
     def subscribe(self, message_type: Any, topic: str, received: Callable[[Any], None], latched: bool = False) -> None:
         self.received[topic] = received
+        if topic in self.told:
+            received(self.told[topic])
 
 
 @pytest.fixture

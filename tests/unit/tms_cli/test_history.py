@@ -7,11 +7,15 @@ import pytest
 from builtin_interfaces.msg import Time
 from tms_msg_db.msg import Event, Run
 from tms_msg_db.srv import ListEvents, ListRuns
+from tms_msg_ts.msg import RunState, RunStates
 from tms_msg_ts.srv import CancelRun
 
+from tms_cli import session
 from tms_cli.commands import cancel, events, runs
+from tms_cli.reasons import SchedulerSilent
 from tms_machine.values import to_parameters
 from tms_reason.errors import RosError, TmsError
+from tms_reason.reason import Foreign
 
 
 def made(run_id: str, state: str = "success", seconds: int | None = 4) -> Run:
@@ -112,9 +116,15 @@ def test_follow_is_no_single_document(mesh, tms) -> None:
     assert tms(events.command, "last", "--follow", "--json").exit_code == 2
 
 
+def active(*begun: tuple[str, int]) -> dict[str, RunStates]:
+    """Active runs and when each began [s], as the scheduler tells them."""
+    return {"/tms/runs": RunStates(runs=[RunState(run_id=name, started_at=Time(sec=at)) for name, at in begun])}
+
+
 @pytest.mark.parametrize(("state", "code"), [("cancelled", 0), ("stop_unconfirmed", 1), ("success", 1)])
 def test_cancel_is_done_only_when_the_stop_was_seen(mesh, tms, state: str, code: int) -> None:
     answers = iter([made("r1", "running", None), made("r1", "stopping", None), made("r1", state)])
+    mesh.told = active(("r1", 100))
     mesh.answers["/tms/db/list_runs"] = lambda limit: ListRuns.Response(runs=[next(answers)])
     mesh.answers["/tms/cancel_run"] = CancelRun.Response()
     end = tms(cancel.command, "last", "--json")
@@ -122,22 +132,48 @@ def test_cancel_is_done_only_when_the_stop_was_seen(mesh, tms, state: str, code:
     assert json.loads(end.stdout)["state"] == state
 
 
-def test_cancel_last_means_the_newest_active_run(mesh, tms) -> None:
-    answers = iter([[NEWEST, made("r1", "running", None)], [NEWEST, made("r1", "cancelled")]])
-    mesh.answers["/tms/db/list_runs"] = lambda limit: ListRuns.Response(runs=next(answers))
+@pytest.mark.parametrize("word", ["last", "r2"])
+def test_cancel_last_means_the_newest_active_run(mesh, tms, word: str) -> None:
+    mesh.told = active(("r1", 100), ("r2-b", 300), ("r3", 200))
+    mesh.answers["/tms/db/list_runs"] = ListRuns.Response(runs=[NEWEST, made("r2-b", "cancelled")])
     mesh.answers["/tms/cancel_run"] = CancelRun.Response()
-    assert tms(cancel.command, "last").exit_code == 0
-    assert ("/tms/cancel_run", {"run_id": "r1"}) in mesh.asked
+    assert tms(cancel.command, word).exit_code == 0
+    assert ("/tms/cancel_run", {"run_id": "r2-b"}) in mesh.asked
 
 
 def test_cancel_says_when_nothing_is_to_be_cancelled(mesh, tms) -> None:
+    mesh.told = active()
     mesh.answers["/tms/db/list_runs"] = ListRuns.Response(runs=[NEWEST])
     assert "no run is active" in str(tms(cancel.command, "last").exception)
     assert "has ended already: success" in str(tms(cancel.command, "20260102").exception)
 
 
-def test_cancel_does_not_need_the_database(mesh, tms) -> None:
-    mesh.answers["/tms/cancel_run"] = CancelRun.Response()
+def test_cancel_says_when_the_scheduler_tells_nothing(mesh, tms, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(session, "LATCHED_LIMIT", 0.0)
+    silent = tms(cancel.command, "last").exception
+    assert isinstance(silent, RosError) and silent.reason == SchedulerSilent()
+
+
+def test_cancel_does_not_wait_for_the_database(mesh, tms, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is asked only for the end, and again if it gives no answer for a while."""
+    answers = iter([RosError(Foreign("the store gave no answer"), "STORE_DOWN"), made("r1", "cancelled")])
+
+    def list_runs(limit: int) -> Any:
+        assert ("/tms/cancel_run", {"run_id": "r1"}) in mesh.asked
+        answer = next(answers)
+        return answer if isinstance(answer, TmsError) else ListRuns.Response(runs=[answer])
+
+    mesh.told = active(("r1", 100))
+    mesh.answers |= {"/tms/cancel_run": CancelRun.Response(), "/tms/db/list_runs": list_runs}
+    assert tms(cancel.command, "last").exit_code == 0
+    monkeypatch.setattr(cancel, "END_LIMIT", 0.1)
+    mesh.answers["/tms/db/list_runs"] = RosError(Foreign("the store gave no answer"), "STORE_DOWN")
     end = tms(cancel.command, "r1")
-    assert ("/tms/cancel_run", {"run_id": "r1"}) in mesh.asked
     assert isinstance(end.exception, RosError), "its end cannot be confirmed, and that is said"
+
+
+def test_a_run_that_nobody_knows_is_left_to_the_scheduler(mesh, tms) -> None:
+    mesh.told = active()
+    mesh.answers["/tms/cancel_run"] = RosError(Foreign("there is no run r9"), "NO_RUN")
+    end = tms(cancel.command, "r9")
+    assert ("/tms/cancel_run", {"run_id": "r9"}) in mesh.asked and "there is no run r9" in str(end.exception)
