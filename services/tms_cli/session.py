@@ -82,8 +82,8 @@ def call(
     return answer
 
 
-def latched(node: "Ros", message_type: type[M], topic: str) -> M | None:
-    """The state on a latched topic of a module; None if none arrives."""
+def latched(node: "Ros", message_type: type[M], topic: str, seconds: float | None = None) -> M | None:
+    """The state on a latched topic of a module; None if none arrives within `seconds` (default: LATCHED_LIMIT)."""
     received: list[M] = []
     there = threading.Event()
 
@@ -92,7 +92,7 @@ def latched(node: "Ros", message_type: type[M], topic: str) -> M | None:
         there.set()
 
     node.subscribe(message_type, topic, receive, latched=True)
-    return received[-1] if there.wait(LATCHED_LIMIT) else None
+    return received[-1] if there.wait(LATCHED_LIMIT if seconds is None else seconds) else None
 
 
 def show_json(data: Any) -> None:

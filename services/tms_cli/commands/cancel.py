@@ -25,12 +25,10 @@ def _which(node: "Ros", word: str) -> str:
     """The id of the run, from the scheduler: a cancel must not wait for the database, which knows of ended ones."""
     from tms_msg_ts.msg import RunStates
 
-    told = session.latched(node, RunStates, "/tms/runs")
-    if told is None:
-        raise RosError(SchedulerSilent(), "NO_ANSWER")
-    active = sorted(told.runs, key=_begun, reverse=True)
+    told = session.latched(node, RunStates, "/tms/runs", session.CALL_LIMIT)
+    active = [] if told is None else sorted(told.runs, key=_begun, reverse=True)
     if word == "last" and not active:
-        raise TmsError(NoRunActive(), "NO_RUN")
+        raise RosError(SchedulerSilent(), "NO_ANSWER") if told is None else TmsError(NoRunActive(), "NO_RUN")
     if word == "last" or any(run.run_id.startswith(word) for run in active):
         return find_run(active, word).run_id
     return _not_active(node, word)

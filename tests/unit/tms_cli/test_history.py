@@ -149,9 +149,11 @@ def test_cancel_says_when_nothing_is_to_be_cancelled(mesh, tms) -> None:
 
 
 def test_cancel_says_when_the_scheduler_tells_nothing(mesh, tms, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(session, "LATCHED_LIMIT", 0.0)
+    monkeypatch.setattr(session, "CALL_LIMIT", 0.0)
     silent = tms(cancel.command, "last").exception
     assert isinstance(silent, RosError) and silent.reason == SchedulerSilent()
+    mesh.answers["/tms/db/list_runs"] = ListRuns.Response(runs=[NEWEST])
+    assert "has ended already: success" in str(tms(cancel.command, "20260102").exception)
 
 
 def test_cancel_does_not_wait_for_the_database(mesh, tms, monkeypatch: pytest.MonkeyPatch) -> None:
