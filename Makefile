@@ -140,10 +140,10 @@ restart: setup ## restart one process (P=name)
 test test-fast: export PYTHONDONTWRITEBYTECODE :=
 # pytest keeps the assertions that it has rewritten: its next start takes half as long
 
-test: setup ## tests that a laptop can run; long ones come by turns, each day others (TURN=1 to 5, or all)
+test: setup ## tests that a laptop can run; long ones come once a week (TURN=1 to 7, or all)
 	@DOCKER=$(DOCKER) sh deploy/system-packages.sh test
 	@$(NPM) test
-	$(PY) -m pytest --turn=$(or $(TURN),today) -n 4 --dist loadfile --no-loadscope-reorder tests || { \
+	$(PY) -m pytest --turn=$(or $(TURN),today) -n 3 --dist loadfile --no-loadscope-reorder tests || { \
 	  echo "again, alone: what passes now was disturbed by other tests on this PC, or is not reliable: both are told"; \
 	  $(PY) -m pytest --last-failed --last-failed-no-failures none -rp tests; }
 

@@ -1,4 +1,4 @@
-"""Long tests come by turns: `make test` takes some of them, each day others, and `make test TURN=all` all of them.
+"""Long tests come by turns: `make test` takes those of its weekday, `make test TURN=all` all of them.
 
 Where a module has the mark `turns`, it comes as a whole: most of what it costs is its mesh. Where a test has it, its
 cases are shared out.
@@ -12,7 +12,7 @@ import pytest
 
 import sharing
 
-TURNS = 5
+TURNS = 7  # days of a week, from Monday on
 TODAY, ALL = "today", "all"
 
 
@@ -25,7 +25,7 @@ def settle(config: pytest.Config) -> None:
     """Say which turn is meant, before the workers start: midnight may come. pytest.UsageError if there is none such."""
     word = config.option.turn
     if word == TODAY:
-        config.option.turn = str(date.today().toordinal() % TURNS + 1)
+        config.option.turn = str(date.today().isoweekday())
     elif word != ALL and word not in map(str, range(1, TURNS + 1)):
         raise pytest.UsageError(f"--turn={word}: {TODAY}, {ALL}, or a number from 1 to {TURNS}")
 

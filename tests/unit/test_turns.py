@@ -23,7 +23,7 @@ CASES = """
 import pytest
 
 @pytest.mark.turns
-@pytest.mark.parametrize("case", range(7))
+@pytest.mark.parametrize("case", range(9))
 def test_case(case): pass
 
 def test_short(): pass
@@ -32,10 +32,10 @@ def test_short(): pass
 
 @pytest.fixture
 def project(pytester: pytest.Pytester) -> pytest.Pytester:
-    """Six long modules, and one with seven long cases and a short test."""
+    """Eight long modules, and one with nine long cases and a short test."""
     pytester.makeini("[pytest]\nmarkers = turns: long")
     pytester.makeconftest(CONFTEST)
-    pytester.makepyfile(test_a=LONG, test_b=LONG, test_c=LONG, test_d=LONG, test_e=LONG, test_f=LONG, test_g=CASES)
+    pytester.makepyfile(test_cases=CASES, **{f"test_{letter}": LONG for letter in "abcdefgh"})
     return pytester
 
 
@@ -48,14 +48,14 @@ def collected(project: pytest.Pytester, *words: str) -> list[str]:
 def test_each_comes_in_one_turn(project: pytest.Pytester) -> None:
     every = collected(project)
     assert every == collected(project, "--turn=all")
-    assert len(every) == 20
+    assert len(every) == 26
     taken = [collected(project, f"--turn={number}") for number in range(1, turns.TURNS + 1)]
-    short = "test_g.py::test_short"
+    short = "test_cases.py::test_short"
     assert all(short in turn for turn in taken)
     assert sorted(one for turn in taken for one in turn if one != short) == sorted(set(every) - {short})
-    cases = [sum("test_case" in one for one in turn) for turn in taken]
-    modules = [{one.partition("::")[0] for one in turn if "test_g" not in one} for turn in taken]
-    assert sorted(cases) == [1, 1, 1, 2, 2] and sorted(map(len, modules)) == [1, 1, 1, 1, 2]
+    cases = [sum("test_case[" in one for one in turn) for turn in taken]
+    modules = [{one.partition("::")[0] for one in turn if "test_cases" not in one} for turn in taken]
+    assert sorted(cases) == [1, 1, 1, 1, 1, 2, 2] and sorted(map(len, modules)) == [1, 1, 1, 1, 1, 1, 2]
     assert all(f"{name}::{test}" in turn for turn, names in zip(taken, modules, strict=True)
                for name in names for test in ("test_one", "test_two"))  # fmt: skip
 
