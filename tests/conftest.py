@@ -214,7 +214,7 @@ def mesh(
 ) -> Iterator[Mesh]:
     """A running mesh with a simulated zx200, its records and three tasks; one for the whole test run.
 
-    Tasks: 1 one loading cycle, 2 four of them, 3 long swings to and fro, 4 a few of these, 5 one move.
+    Tasks: 1 one loading cycle, 2 four of them, 3 many long swings to and fro, 4 a few of these, 5 one move.
     """
     folder = tmp_path_factory.mktemp("mesh")
     site = folder / "site.yaml"
@@ -224,7 +224,7 @@ def mesh(
         made.tms("task", "add", "configs/tasks/one_loading_cycle.xml")
         made.tms("task", "add", "configs/tasks/four_loading_cycles.xml")
         made.tms("param", "load", str(PROJECT / "tests" / "data" / "swings.yaml"))
-        for name in ("swings", "few_swings", "one_move"):
+        for name in ("many_swings", "few_swings", "one_move"):
             made.tms("task", "add", str(PROJECT / "tests" / "data" / f"{name}.xml"))
         request.session.stash[RUNNING] = made
         yield made
