@@ -137,8 +137,8 @@ restart: setup ## restart one process (P=name)
 	@test -n "$(P)" || { echo "usage: make restart P=zx200:rc (make status lists the names)" >&2; exit 2; }
 	@$(TMS) restart $(P)
 
-test test-fast: export PYTHONDONTWRITEBYTECODE :=
 # pytest keeps the assertions that it has rewritten: its next start takes half as long
+test test-fast: export PYTHONDONTWRITEBYTECODE :=
 
 test: setup ## tests that a laptop can run; long ones come once a week (TURN=1 to 7, or all)
 	@DOCKER=$(DOCKER) sh deploy/system-packages.sh test

@@ -64,7 +64,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     late = turns.waiting(items, config.option.turn)
     config.hook.pytest_deselected(items=list(late))
     items[:] = [item for item in items if item not in late]
-    items.sort(key=sharing.turn)
+    items.sort(key=sharing.rank)
 
 
 @contextmanager

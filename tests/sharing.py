@@ -64,7 +64,7 @@ def uses_mesh(file: Path) -> bool:
     return USES_MESH.search(text) is not None and OWN_MESH.search(text) is None
 
 
-def turn(item: pytest.Item) -> int:
+def rank(item: pytest.Item) -> int:
     """When a test comes: what lasts longest first, tests of pure logic last."""
     if uses_mesh(item.path):
         return -max(COSTS.values())

@@ -13,7 +13,6 @@ from tms_reason.errors import RosError, TmsError
 
 if TYPE_CHECKING:
     from tms_msg_db.msg import Run
-    from tms_msg_ts.msg import RunState
 
     from tms_ros.node import Ros
 
@@ -25,8 +24,10 @@ def _which(node: "Ros", word: str) -> str:
     """The id of the run, from the scheduler: a cancel must not wait for the database, which knows of ended ones."""
     from tms_msg_ts.msg import RunStates
 
+    from tms_machine import stamps
+
     told = session.latched(node, RunStates, "/tms/runs", session.CALL_LIMIT)
-    active = [] if told is None else sorted(told.runs, key=_begun, reverse=True)
+    active = [] if told is None else sorted(told.runs, key=lambda run: stamps.seconds(run.started_at), reverse=True)
     if word == "last" and not active:
         raise RosError(SchedulerSilent(), "NO_ANSWER") if told is None else TmsError(NoRunActive(), "NO_RUN")
     if word == "last" or any(run.run_id.startswith(word) for run in active):
@@ -34,16 +35,13 @@ def _which(node: "Ros", word: str) -> str:
     return _not_active(node, word)
 
 
-def _begun(run: "RunState") -> tuple[int, int]:
-    return run.started_at.sec, run.started_at.nanosec
-
-
 def _not_active(node: "Ros", word: str) -> str:
     """The given word itself where the database is away: the scheduler then says what it knows."""
     try:
-        run = find_run(history(node, MAX_RUNS), word)
-    except RosError:
+        runs = history(node, MAX_RUNS)
+    except TmsError:  # also one that answers that its store is away
         return word
+    run = find_run(runs, word)
     if has_ended(run):
         raise TmsError(RunHasEnded(run.run_id, run.state), "RUN_ENDED")
     return run.run_id

@@ -174,8 +174,12 @@ def test_cancel_does_not_wait_for_the_database(mesh, tms, monkeypatch: pytest.Mo
     assert isinstance(end.exception, RosError), "its end cannot be confirmed, and that is said"
 
 
-def test_a_run_that_nobody_knows_is_left_to_the_scheduler(mesh, tms) -> None:
+@pytest.mark.parametrize(
+    "away", [RosError(Foreign("nobody there"), "NO_SERVER"), TmsError(Foreign("full"), "STORE_DOWN")]
+)
+def test_what_the_database_cannot_tell_is_left_to_the_scheduler(mesh, tms, away: TmsError) -> None:
     mesh.told = active()
+    mesh.answers["/tms/db/list_runs"] = away
     mesh.answers["/tms/cancel_run"] = RosError(Foreign("there is no run r9"), "NO_RUN")
     end = tms(cancel.command, "r9")
     assert ("/tms/cancel_run", {"run_id": "r9"}) in mesh.asked and "there is no run r9" in str(end.exception)
