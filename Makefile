@@ -4,7 +4,7 @@ PYTHON ?= python3
 P ?=
 SITE ?=
 ROLE ?=
-# Processes of `make test-fast`.
+# Processes of `make test-fast` (three where nothing is said: some tests wait), of mutants and of the night.
 WORKERS ?= auto
 # Key under pcs: of the site file, where a PC is not named after its role, as the compose files are. (make knows a PC itself.)
 PC = $(ROLE)
@@ -147,10 +147,10 @@ test: setup ## tests that a laptop can run; long ones come once a week (TURN=1 t
 	  echo "again, alone: what passes now was disturbed by other tests on this PC, or is not reliable: both are told"; \
 	  $(PY) -m pytest --last-failed --last-failed-no-failures none -rp tests; }
 
-test-fast: setup ## unit, contract and conformance tests without long ones: no ROS processes, two minutes (WORKERS=2)
+test-fast: setup ## unit, contract and conformance tests without long ones: no ROS processes, two minutes (WORKERS=3)
 	@DOCKER=$(DOCKER) sh deploy/system-packages.sh test
 	@$(NPM) test
-	$(PY) -m pytest -q --hypothesis-profile=fast -m "not turns" -n $(WORKERS) tests/unit tests/contract tests/conformance
+	$(PY) -m pytest -q --hypothesis-profile=fast -m "not turns" -n $(patsubst auto,3,$(WORKERS)) tests/unit tests/contract tests/conformance
 
 lint: setup ## ruff, mypy, import-linter; Biome and tsc
 	@$(NPM) run lint

@@ -25,5 +25,6 @@ export default defineConfig(({ command }) => ({
     chunkSizeWarningLimit: 600, // kB: three, which only the picture in 3D loads
   },
   server: { fs: { allow: ["../../.."] } }, // tests read tasks of the field
-  test: { environment: "jsdom", cache: false, fsModuleCache: false, testTimeout: 120_000 }, // nothing is written beside the sources,
+  // Tests that need a document begin with `// @vitest-environment jsdom`: it takes longer than most tests.
+  test: { cache: false, fsModuleCache: false, testTimeout: 120_000 }, // nothing is written beside the sources,
 }));

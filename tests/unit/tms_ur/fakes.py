@@ -2,7 +2,9 @@
 
 import asyncio
 import threading
+from dataclasses import replace
 from datetime import date, datetime, timedelta, timezone
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -305,12 +307,18 @@ class FakeAudit:
 ZX200 = {"zx200": {"model": "zx200"}}
 
 
+@cache
+def demo() -> tuple[Site, dict[str, Any]]:
+    """The demo's site, with a truck's model, and its file as data: to read them takes longer than most tests."""
+    site = load_site()
+    truck = parse(CONFIGS / "machines" / "ic120.yaml", MachineModel)
+    return replace(site, models={**site.models, "ic120": truck}), site.file.model_dump(exclude_unset=True)
+
+
 def site(**changes: Any) -> Site:
     """The demo's site with its excavator only, changed."""
-    demo = load_site()
-    file = SiteFile.model_validate({**demo.file.model_dump(exclude_unset=True), "machines": ZX200, **changes})
-    truck = parse(CONFIGS / "machines" / "ic120.yaml", MachineModel)
-    return Site(demo.path, file, {**demo.models, "ic120": truck}, demo.state)
+    whole, data = demo()
+    return replace(whole, file=SiteFile.model_validate({**data, "machines": ZX200, **changes}))
 
 
 def app(site_client: FakeSiteClient, bind: str = "127.0.0.1", users: Path | None = None, **parts: Any) -> FastAPI:

@@ -1,3 +1,4 @@
+// @vitest-environment jsdom
 import { configure, fireEvent, render, screen, waitFor } from "@testing-library/react";
 import { afterEach, beforeEach, expect, test, vi } from "vitest";
 import { Command } from "./command";

@@ -1,3 +1,4 @@
+// @vitest-environment jsdom
 import { expect, test } from "vitest";
 import type { RecordChange, Stored } from "../models";
 import { linesOf } from "./series";

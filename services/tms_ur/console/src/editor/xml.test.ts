@@ -1,3 +1,4 @@
+// @vitest-environment jsdom
 import { expect, test } from "vitest";
 import { copied, inserted, moved, removed, withAttribute, wrapped } from "./edits";
 import { type Element, encoded, everyElement, lineAt, parse, valueIn, XmlError } from "./xml";

@@ -1,3 +1,4 @@
+// @vitest-environment jsdom
 import { configure, fireEvent, render, screen, waitFor } from "@testing-library/react";
 import { expect, test, vi } from "vitest";
 import { journalOf } from "../journal/journal";
