@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 from types import ModuleType
 
@@ -53,6 +54,25 @@ def test_table_last_line_and_history(made_up: None, tmp_path: Path, capsys: pyte
         "group": "made_up", "name": "slow", "unit": "ms", "value": 1234.0, "floor": 0.5, "ratio": 2468.0, "limit": 2.0,
         "allowed": 2.0, "held": False, "note": "the third",
     }  # fmt: skip
+
+
+def test_a_group_that_breaks_off_is_told_and_the_others_go_on(
+    made_up: None, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def measure() -> Iterator[Figure]:
+        yield Figure("before", "ms", 1.0, 2.0, 0.5)
+        raise TimeoutError("not within 60 s: a gateway")
+
+    module = ModuleType("bench.away")
+    module.measure = measure
+    monkeypatch.setitem(sys.modules, "bench.away", module)
+    monkeypatch.setattr(runner, "groups", lambda: ["away", "made_up"])
+    sys.modules["bench.made_up"].measure = lambda: [Figure("fast", "ms", 1.0, 2.0, 0.5)]
+    assert runner.main(["--json", str(tmp_path / "history.jsonl")]) == 1
+    said = capsys.readouterr()
+    assert [line.split()[1] for line in said.out.splitlines()[1:3]] == ["before", "fast"]
+    assert said.out.splitlines()[-1] == "2 held, 0 short; broke off: away"
+    assert "TimeoutError: not within 60 s: a gateway" in said.err
 
 
 def test_an_unknown_group_is_told_with_the_groups_there_are(capsys: pytest.CaptureFixture[str]) -> None:
