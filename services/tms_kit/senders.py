@@ -32,6 +32,7 @@ class Senders:
         self._permits: dict[str, RemotePermit] = {}  # made with the first goal that needs it: each wakes the process
         self._goal: AnyGoal | None = None
         self._stood = False  # the scheduler was seen to stand behind the run of this goal
+        self._ends = False  # this goal was cancelled here
         self._peers: list[AnyPeer] = []  # of the scheduler
 
     def refusal(self, goal: AnyGoal) -> Reason | None:
@@ -42,7 +43,7 @@ class Senders:
 
     def watch(self, goal: AnyGoal | None) -> None:
         """Cancel this goal when its sender is lost; None: there is no goal any more."""
-        self._goal, self._stood = goal, False
+        self._goal, self._stood, self._ends = goal, False, False
         if goal is None:
             return
         if parse(goal.uuid) is not None:
@@ -50,6 +51,15 @@ class Senders:
                 self._see("ts")
         elif self._site.other_form(self._app.machine):
             self._see(f"if_{self._subtask}")
+
+    @property
+    def gone(self) -> bool:
+        """Whether no scheduler stands behind the run of the present goal any more, so that it ends soon."""
+        goal, permit = self._goal, self._permits.get("ts")
+        owner = None if goal is None else parse(goal.uuid)
+        if owner is None or permit is None or not self._stood:
+            return self._ends
+        return self._behind(permit) != owner.run
 
     def add(self, peer: AnyPeer) -> None:
         """Let the open calls of a peer that the scheduler serves end with it."""
@@ -97,6 +107,6 @@ class Senders:
         self._end(goal, ProcessEnded("tms:ts"))
 
     def _end(self, goal: AnyGoal, why: Reason) -> None:
-        self._goal = None
+        self._goal, self._ends = None, True
         self._app.log.warning("cancelled", goal=goal.id, reason=why)
         goal.cancel()

@@ -1,7 +1,7 @@
 """Process of one subtask: the action server for its leaf goals around one file of tms_subtasks/."""
 
 import threading
-from collections.abc import Callable, Mapping
+from collections.abc import Awaitable, Callable, Mapping
 from typing import Any
 
 from pydantic import ValidationError
@@ -10,7 +10,7 @@ from tms_msg_ts.action import LeafNodeBase
 
 from tms_config.clock import monotonic
 from tms_kit.machine import Machine, SubtaskCancelled
-from tms_kit.senders import Senders
+from tms_kit.senders import GONE, Senders
 from tms_kit.subtask import Params, Subtask, load
 from tms_kit.yard import Yard
 from tms_machine.goal_inputs import KINDS, parted
@@ -31,6 +31,7 @@ from tms_runtime.app import App
 
 DB_LIMIT = 10.0  # s to wait for the database at the start; after that, goals are refused with a reason
 RECORD_LIMIT = 0.8  # s for the database while a goal waits for its answer: a C++ leaf gives up after 1 s
+GONE_LIMIT, MOMENT = GONE + 0.5, 0.02  # s that a goal waits for the end of the last one; between looks
 FEEDBACK_GAP = 0.1  # s between feedbacks
 LeafGoal = Goal[LeafNodeBase.Goal, LeafNodeBase.Feedback]
 
@@ -69,6 +70,9 @@ class _Server:
         self.offered = True
 
     async def accept(self, request: LeafNodeBase.Goal) -> Reason | None:
+        deadline = monotonic() + GONE_LIMIT
+        while self._reserved and self._senders.gone and monotonic() < deadline:
+            await self._moment()  # a run that is resumed may come while the goal of its lost scheduler ends
         if self._reserved:
             return Busy(self._app.process.full)
         self._reserved = True
@@ -77,6 +81,12 @@ class _Server:
         if wrong is not None:
             self._app.log.warning("rejected", record=request.record_name, reason=wrong)
         return wrong
+
+    def _moment(self) -> Awaitable[None]:
+        over: Any = self._app.ros.create_future()
+        self._app.ros.after(MOMENT, lambda: over.set_result(None))
+        waited: Awaitable[None] = over
+        return waited
 
     async def _check(self, request: LeafNodeBase.Goal) -> Reason | None:
         self._want = self._lock = None

@@ -147,6 +147,19 @@ def test_another_run_ends_it_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
     assert goal.cancels == 1
 
 
+def test_a_goal_of_a_lost_scheduler_is_known_to_end_soon(monkeypatch: pytest.MonkeyPatch) -> None:
+    goals_of_runs, goal, scheduler = waiting(monkeypatch)
+    assert not goals_of_runs.gone
+    scheduler.be(SCHEDULED, alive=False)
+    assert goals_of_runs.gone
+    scheduler.be(SCHEDULED, alive=True)
+    assert not goals_of_runs.gone
+    scheduler.be(Owner(8).goal_id(b"ts0"), alive=True)
+    assert goal.cancels == 1 and goals_of_runs.gone, "cancelled, and not over yet"
+    goals_of_runs.watch(None)
+    assert not goals_of_runs.gone
+
+
 def test_the_next_goal_is_seen_by_the_permit_that_is_there(monkeypatch: pytest.MonkeyPatch) -> None:
     first, second = Goal(OF_A_RUN), Goal(Owner(7, 2).goal_id(b"abd"))
     whole: list[Any] = [first, second]

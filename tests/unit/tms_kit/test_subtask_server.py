@@ -2,6 +2,7 @@
 
 import asyncio
 import threading
+from collections.abc import Callable
 from types import SimpleNamespace
 from typing import Any
 
@@ -11,9 +12,10 @@ from tms_msg_db.msg import Record
 from tms_msg_db.srv import GetParameter, SetParameter
 from tms_msg_ts.action import LeafNodeBase
 
+from tms_kit import subtask_server
 from tms_kit.subtask import Params, Progress, Subtask
 from tms_kit.subtask_server import _Server
-from tms_machine.reasons import BadRecord, InputsNotTaken
+from tms_machine.reasons import BadRecord, Busy, InputsNotTaken
 from tms_machine.record_lock import FLAG
 from tms_machine.values import from_parameters, to_parameters
 from tms_reason.errors import SubtaskFailed
@@ -225,3 +227,30 @@ def test_a_cancel_that_came_first_reaches_the_subtask() -> None:
     assert accepted(server) is None
     assert server._execute(Goal(cancelled=True)) is Outcome.CANCELED
     assert kind.cancels == ["heard"]
+
+
+@pytest.mark.parametrize("gone", [True, False])
+def test_a_goal_waits_for_the_end_of_one_whose_scheduler_is_gone(gone: bool) -> None:
+    server, _ = served(Database(1.0), plan_only=False)
+    assert accepted(server) is None
+    waits: list[float] = []
+
+    def after(seconds: float, step: Callable[[], None]) -> None:
+        waits.append(seconds)
+        server._reserved = len(waits) < 3
+        step()
+
+    server._senders = SimpleNamespace(gone=gone)
+    server._app.ros.create_future, server._app.ros.after = asyncio.Future, after
+    assert (accepted(server) is None) == gone
+    assert len(waits) == (3 if gone else 0)
+
+
+def test_it_does_not_wait_for_ever(monkeypatch: pytest.MonkeyPatch) -> None:
+    server, _ = served(Database(1.0), plan_only=False)
+    assert accepted(server) is None
+    now = iter(range(100))
+    monkeypatch.setattr(subtask_server, "monotonic", lambda: float(next(now)))
+    server._senders = SimpleNamespace(gone=True)
+    server._app.ros.create_future, server._app.ros.after = asyncio.Future, lambda _, step: step()
+    assert accepted(server) == Busy("zx200:subtask_dig")
