@@ -55,6 +55,7 @@ class Gateways:
         self._holders: dict[str, Holder] = {}
         self._pressed: frozenset[str] = frozenset()  # machines whose latch was not shown since the button was pressed
         self._pressed_at = float("-inf")
+        self._shown: frozenset[str] = frozenset()  # machines whose present gateway shows a latch
         for machine in app.site.file.machines:
             self._attend(machine)
         app.ros.subscribe(Bool, "/emergency_signal", self._signal, depth=SIGNALS)
@@ -146,6 +147,9 @@ class Gateways:
         self._states[machine] = state
         if state.latch:
             self._pressed -= {machine}
+            self._shown |= {machine}
+        else:
+            self._shown -= {machine}
         holder = self._holders.get(machine)
         if holder is not None and state.latch:
             holder.stopped(machine, wire.known(state.latch))
@@ -159,12 +163,16 @@ class Gateways:
 
     def _signal(self, message: Bool) -> None:
         if message.data:
-            self._pressed, self._pressed_at = frozenset(self._gateways), monotonic()
+            # A machine that shows a latch has it already; once somebody has re-armed it, the press is over.
+            self._pressed |= self._gateways.keys() - self._shown
+            self._pressed_at = monotonic()
             for machine, holder in list(self._holders.items()):
                 holder.stopped(machine, SoftwareStop())
 
     def _gateway_changed(self, machine: str, gateway: RemotePermit) -> None:
         """Stop the machine of a lost gateway at once, as the gateway would; its successor does the same, but later."""
+        if not gateway.alive:
+            self._shown -= {machine}
         if gateway.alive or gateway.goal == NOBODY:
             return
         if monotonic() - self._pressed_at < NOTED:  # the latch that it may have shown may not be on its disk

@@ -12,6 +12,7 @@ import pytest
 from com3_msgs.action import SetDumpAngle
 from geometry_msgs.msg import PoseStamped, Twist
 from nav_msgs.msg import Odometry
+from nav_msgs.msg import Path as Way
 from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 from tf2_msgs.msg import TFMessage
@@ -19,6 +20,7 @@ from tf2_msgs.msg import TFMessage
 import programs
 from conftest import wait_until
 from tms_config.config import load_site
+from tms_machine.border import PLAN
 from tms_ros.client import Call
 from tms_ros.goals import Outcome
 from tms_ros.node import Ros
@@ -46,7 +48,9 @@ class Rig:
         self.odom: list[Any] = []
         self.frames: dict[str, Any] = {}
         self.said: list[Any] = []
-        self._subscriptions = [
+        self.plans: list[Any] = []
+        self._subscriptions = [  # before the machine is there: what is told once would be missed by one that comes late
+            ros.subscribe(Way, f"/{machine}/{PLAN}", self.plans.append, depth=10),
             ros.subscribe(JointState, f"/{machine}/{self.border.joint_states}", self.states.append, depth=10),
             ros.subscribe(Odometry, f"/{machine}/{self.border.odom}", self.odom.append, depth=10),
             ros.subscribe(TFMessage, "/tf", self._framed, depth=10),

@@ -46,6 +46,7 @@ class Scheduler(PermitProcess):
         self._receipts: list[Stop] = []
         self._states: dict[str, State] = {}
         self.unlatched: set[str] = set()  # machines whose latch was not shown since the button was pressed
+        self.shown: set[str] = set()  # whose present gateway shows a latch
         self.pressed_at = float("-inf")
         self._gateways: dict[str, PermitLink] = {}
         self._last = 0
@@ -56,7 +57,7 @@ class Scheduler(PermitProcess):
 
     def start(self) -> None:
         self.begin()
-        self.runs, self._states, self._receipts, self.unlatched = {}, {}, [], set()
+        self.runs, self._states, self._receipts, self.unlatched, self.shown = {}, {}, [], set(), set()
         self.hung_at, self.pressed_at = float("inf"), float("-inf")
         self._gateways = {name: PermitLink("rc") for name in self.site.units}
         for name, unit in self.site.units.items():
@@ -221,13 +222,18 @@ class Scheduler(PermitProcess):
     def _reported(self, name: str, alive: int, stale: int) -> None:
         now = self.world.now
         self._gateways[name].reported(alive, stale, False, now)
+        if alive == 0:
+            self.shown.discard(name)
         if alive == 0 and now - self.pressed_at < NOTED:  # the latch that it has shown may not be on its disk
             self.unlatched.add(name)
 
     def _state(self, name: str, state: State) -> None:
         self._states[name] = state
-        if state.latch is not None:
+        if state.latch is None:
+            self.shown.discard(name)
+        else:
             self.unlatched.discard(name)
+            self.shown.add(name)
         run = next((run for run in self.runs.values() if name in run.task.machines() and run.core.held), None)
         if run is not None and state.latch is not None:
             run.stopped(name, state.latch)
@@ -237,7 +243,8 @@ class Scheduler(PermitProcess):
 
     def pressed(self) -> None:
         """The stop button is pressed."""
-        self.unlatched, self.pressed_at = set(self.site.units), self.world.now
+        self.unlatched |= self.site.units.keys() - self.shown
+        self.pressed_at = self.world.now
         for run in [run for run in self.runs.values() if run.core.held]:
             run.stopped(run.units[0].name, SoftwareStop())
 

@@ -12,6 +12,7 @@ from tms_msg_rc.srv import StopMachine
 
 from tms_config.clock import monotonic
 from tms_decision.duty import NOTED
+from tms_decision.permit_link import NOBODY
 from tms_decision.reasons import Cancelled, SoftwareStop
 from tms_reason.wire import to_line
 from tms_ts import gateways
@@ -85,6 +86,15 @@ def test_a_gateway_that_has_missed_a_press_is_asked_to_latch(monkeypatch: pytest
     state(MachineState(latch=to_line(SoftwareStop())))
     assert asked("zx200") == orderly and asked("ic120") == missed
     changed["zx200"](SimpleNamespace(alive=False, goal=b"serves"))  # so soon that its disk may not have it
+    assert asked("zx200") == missed
+    ros.heard["/emergency_signal"](Bool(data=True))
+    state(MachineState(latch=to_line(SoftwareStop())))
+    ros.heard["/emergency_signal"](Bool(data=True))  # somebody goes on pressing a machine that shows its latch
+    state(MachineState())
+    assert asked("zx200") == orderly, "it was re-armed"
+    state(MachineState(latch=to_line(SoftwareStop())))
+    changed["zx200"](SimpleNamespace(alive=False, goal=NOBODY))  # the next one has shown nothing yet
+    ros.heard["/emergency_signal"](Bool(data=True))
     assert asked("zx200") == missed
     monkeypatch.setattr(gateways, "monotonic", lambda: monotonic() + NOTED)
     state(MachineState(latch=to_line(SoftwareStop())))
