@@ -15,6 +15,7 @@ from tms_cli.task_file import read, xml_files
 from tms_cli.words import reason, say, sentence, with_command
 from tms_config.clock import monotonic
 from tms_reason.errors import RosError, TaskError, TmsError
+from tms_schedulers.asking import of_first
 from tms_ts import bt
 from tms_ts.bt.source import parse
 from tms_ts.tree_reasons import Line, Placed
@@ -100,7 +101,8 @@ class SchedulerClient(AbstractContextManager["SchedulerClient"]):
         if self.cpp or self._absent or found.errors:
             return
         try:
-            answer = session.call(self.node(), CheckTask, "/tms/check_task", **task)
+            node, where = self.node(), session.site()
+            answer = of_first(where, lambda one: session.call(node, CheckTask, one.named("check_task"), **task))
         except RosError:
             self._absent = True
             return

@@ -19,12 +19,17 @@ from tms_reason.names import check_sent
 from tms_reason.reason import Foreign
 from tms_runtime import environment, state_folder
 from tms_runtime.priority import undisturbed
+from tms_schedulers import asking
+from tms_schedulers.names import schedulers
 
 if TYPE_CHECKING:
+    from tms_msg_ts.msg import RunStates
+
     from tms_ros.node import Ros
 
 CALL_LIMIT = 10.0  # s; on a full PC, discovery of a process that is there has taken more than 5
 LATCHED_LIMIT = 5.0  # s for the latched state of a module to arrive
+OTHERS_LIMIT = 1.0  # s for other schedulers, once the first has told of its runs
 leaving = ExitStack()  # leaves the ROS graph; closed at the end of this process, since DDS sometimes hangs there
 
 
@@ -93,6 +98,35 @@ def latched(node: "Ros", message_type: type[M], topic: str, seconds: float | Non
 
     node.subscribe(message_type, topic, receive, latched=True)
     return received[-1] if there.wait(LATCHED_LIMIT if seconds is None else seconds) else None
+
+
+def of_any(node: "Ros", service_type: ServiceType[Req, Reply], name: str, unknown: str, **fields: Any) -> Reply:
+    """Call a service of the scheduler that knows what is asked; the others refuse with the code `unknown`.
+
+    Raises:
+        TmsError: as `call`.
+    """
+    return asking.of_any(site(), lambda one: call(node, service_type, one.named(name), **fields), unknown)
+
+
+def runs(node: "Ros", seconds: float = LATCHED_LIMIT) -> "RunStates | None":
+    """The active runs and open questions of all schedulers; None if none of them tells any within `seconds`."""
+    from tms_schedulers.hearing import hear_runs
+
+    told: list[RunStates] = []
+    heard = threading.Condition()
+
+    def receive(message: "RunStates") -> None:
+        with heard:
+            told.append(message)
+            heard.notify_all()
+
+    hear_runs(node, site(), receive)
+    several = len(schedulers(site())) - 1
+    with heard:
+        if heard.wait_for(lambda: told, seconds) and several:
+            heard.wait_for(lambda: len(told) > several, OTHERS_LIMIT)
+        return told[-1] if told else None
 
 
 def show_json(data: Any) -> None:

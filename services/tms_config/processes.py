@@ -152,6 +152,8 @@ def _services(site: Site) -> list[Process]:
         if isinstance(service, Bridge) and service.trial:
             rows.append(Process("sim", "operasim", "sim", "tms_if.trial", 0, PURPOSES["operasim"], ours=False))
         rows += [replace(row, name=f"host_{pc}", role=roles(pc, facts)[0], pc=pc) for pc, facts in several] or [row]
+        more = [pc for pc, facts in site.file.pcs.items() if name == "ts" and "scheduler" in roles(pc, facts)]
+        rows += [replace(row, name=f"ts_{pc}", role="scheduler", pc=pc) for pc in more]
     return rows
 
 

@@ -11,8 +11,8 @@ from tms_reason.validation import Wrong, problems
 
 ServiceName = Annotated[str, Field(pattern=r"^(/[A-Za-z_][A-Za-z0-9_]*)+$", max_length=200)]
 ServiceType = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*/[A-Z][A-Za-z0-9]*$")]  # pkg/Type
-Role = Literal["cps", "machine", "sensing", "sim"]
-ROLES: tuple[Role, ...] = ("cps", "machine", "sensing", "sim")
+Role = Literal["cps", "scheduler", "machine", "sensing", "sim"]
+ROLES: tuple[Role, ...] = ("cps", "scheduler", "machine", "sensing", "sim")
 
 
 class Service(Settings):
@@ -207,7 +207,7 @@ class Pc(Settings):
 
     address: str = Field(min_length=1)  # IP address or name, for the other PCs
     roles: tuple[Role, ...] = ()  # default: the role that is the PC's name
-    machines: tuple[str, ...] = ()  # whose processes run here; default: machines that no other PC with that role has
+    machines: tuple[str, ...] = ()  # whose processes (tasks) run here; default: those that no other PC has
 
 
 class Peer(Settings):

@@ -18,6 +18,7 @@ from tms_db.cpp_services import CppServices
 from tms_db.cycles import COLLECTION, Cycles
 from tms_db.ground_services import GroundServices
 from tms_db.history import History
+from tms_db.machine_leases import MachineLeases
 from tms_db.machine_states import MachineStates
 from tms_db.parameter_services import ParameterServices
 from tms_db.places import PlaceServices
@@ -105,6 +106,7 @@ def start(app: App) -> None:
     TerrainServices(app, db, connection).offer()
     GroundServices(app, db).offer(answering)
     PlaceServices(app, db, connection).offer()
+    MachineLeases(app, db, connection).offer()
     RecordingServices(db).offer(answering)
     WorkServices(db).offer(answering)
     recorder = Recorder(app, db, connection)

@@ -13,7 +13,6 @@ from typing import Any
 
 from prometheus_client import Counter, Gauge
 from tms_msg_ground.msg import SoilLoad
-from tms_msg_ts.msg import RunStates
 
 from tms_config.clock import monotonic, utc_now
 from tms_config.config import Site
@@ -28,6 +27,7 @@ from tms_reason.errors import DbError
 from tms_ros.node import Ros
 from tms_runtime.app import App
 from tms_runtime.log import Logger
+from tms_schedulers.hearing import sample_runs
 
 LOOK = 0.5  # s between looks for an active run
 TICK = 0.1  # s between rows of joints
@@ -140,7 +140,7 @@ class Recorder:
     def __init__(self, app: App, db: Db, connection: StoreConnection) -> None:
         self._ros, self._site = app.ros, app.site
         self.pieces = Pieces(db, connection, app.log)
-        self._runs = app.ros.sample(RunStates, "/tms/runs")
+        self._runs = sample_runs(app.ros, app.site)
         self._until = -math.inf  # s, monotonic
         self._hearing: Hearing | None = None
         self._active = False
@@ -159,7 +159,7 @@ class Recorder:
 
     def _step(self) -> float:
         now = monotonic()
-        for told in self._runs():
+        if (told := self._runs()) is not None:
             self._until = now + TAIL if told.runs else self._until
             if self._active and not told.runs:
                 self._put_all()  # so that the recording of a run is there when the run is over

@@ -5,17 +5,19 @@ from collections.abc import Iterable
 from tms_msg_rc.msg import MachineState
 from tms_msg_ts.msg import RunStates
 
+from tms_config.config import Site
 from tms_ground.work import Duty
 from tms_ros.node import Ros
+from tms_schedulers.hearing import hear_runs
 
 
 class Duties:
     """The last that was told; the executor thread writes, other threads read."""
 
-    def __init__(self, ros: Ros, machines: Iterable[str]) -> None:
+    def __init__(self, ros: Ros, site: Site, machines: Iterable[str]) -> None:
         self._runs: dict[str, str] = {}  # machine -> run; replaced, never changed
         self._states: dict[str, MachineState] = {}
-        ros.subscribe(RunStates, "/tms/runs", self._on_runs, latched=True)
+        hear_runs(ros, site, self._on_runs)
         for machine in machines:
             ros.subscribe(MachineState, f"/{machine}/rc/state", self._on_state, latched=True)
 

@@ -74,7 +74,7 @@ class Keeper:
         self._speed = speed_of(app.site)
         self._times: dict[str, float] = {}  # machine -> when it was looked at last [s of the machines]
         begin(watch.work.kinds)
-        self._duties = Duties(app.ros, models)
+        self._duties = Duties(app.ros, app.site, models)
         self._delivery = Delivery(app.ros, app.log, watch.waiting)
         self._told = 0.0
         self.lock = threading.Lock()  # between the threads that look, save and answer

@@ -31,7 +31,7 @@ class Permit:
         self, ros: Ros, pulse: Pulse, machine: str, process: str, alive: Callable[[], bool] = lambda: True
     ) -> None:
         """`alive` is called at every beat: whether the process still does its work."""
-        self._pulse, self._process, self._alive = pulse, process, alive
+        self._ros, self._pulse, self._process, self._alive = ros, pulse, process, alive
         self._beats = 0
         self._publisher = ros.lease_publisher(Message, topic(machine, process), LEASE)
 
@@ -44,6 +44,10 @@ class Permit:
         """End the assertions, as the goal is over."""
         self._pulse.remove(self._beat)
         self._publisher.publish(Message(process=self._process))
+
+    def end(self) -> None:
+        """Leave the topic; on the executor thread."""
+        self._ros.node.destroy_publisher(self._publisher)
 
     def _beat(self) -> None:
         self._beats += 1
@@ -60,10 +64,6 @@ class RemotePermit:
         self._link = PermitLink(process)
         self._ros, self._pulse, self._changed = ros, pulse, changed
         leases.subscribe(ros, Message, topic(machine, process), LEASE, self._on_message, self._on_liveliness)
-
-    @property
-    def process(self) -> str:
-        return self._link.process
 
     @property
     def goal(self) -> bytes:

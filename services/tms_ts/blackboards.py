@@ -8,8 +8,6 @@ from rcl_interfaces.srv import GetParameters
 from tms_runtime.app import App
 from tms_ts.active_runs import ActiveRuns
 
-SERVICE = "/tms/blackboard"
-
 
 class Blackboards:
     """Serves the values that a node of an active run sees."""
@@ -17,9 +15,9 @@ class Blackboards:
     def __init__(self, runs: ActiveRuns) -> None:
         self._runs = runs
 
-    def serve(self, app: App) -> None:
+    def serve(self, app: App, name: str) -> None:
         """Offer the service."""
-        app.ros.offer(GetParameters, SERVICE, self.get)
+        app.ros.offer(GetParameters, name, self.get)
 
     def get(self, request: GetParameters.Request, response: GetParameters.Response) -> GetParameters.Response:
         """The names are a run and the path of a node; one value: its entries as a JSON object, unset without any."""

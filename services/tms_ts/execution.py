@@ -28,6 +28,7 @@ from tms_ts.hosts import Hosts
 from tms_ts.interrupted import Interrupted
 from tms_ts.interrupted_run import Header, InterruptedRun
 from tms_ts.journal import Journal
+from tms_ts.leases import Leases
 from tms_ts.machines import Identity, Machines
 from tms_ts.numbers import Numbers, no_disk
 from tms_ts.place_check import orders_of
@@ -75,6 +76,7 @@ class Parts:
     publisher: RunsPublisher
     check: TaskCheck
     places: PlaceRequests
+    leases: Leases
 
 
 class Execution:
@@ -93,7 +95,7 @@ class Execution:
 
     def _execute_any(self, goal: TaskGoal) -> Ended[ExecuteTask.Result]:
         if not goal.request.resume:
-            return self._run(goal, None)
+            return self._run_own(goal)
         interrupted = self._parts.interrupted
         try:
             past, header = interrupted.begin(goal.request.resume)
@@ -104,11 +106,22 @@ class Execution:
         finally:
             interrupted.over(header.run_id)
 
+    def _run_own(self, goal: TaskGoal) -> Ended[ExecuteTask.Result]:
+        parts = self._parts
+        if parts.leases.several:
+            try:
+                text = parts.check.task(goal.request.task_id).task_sequence
+                tree = bt.load(text, world=None, templates=parts.check.template)
+                parts.leases.refuse_other(machines_of(tree))
+            except TmsError as error:
+                return _refused("", error)
+        return self._run(goal, None)
+
     def _run(self, goal: TaskGoal, past: InterruptedRun | None) -> Ended[ExecuteTask.Result]:
         parts = self._parts
         try:
             facts = self._facts(goal, past)
-        except TaskError as error:
+        except TmsError as error:
             return _refused(goal.request.resume, error)
         bind_contextvars(run=facts.run_id)
         record = parts.records.open(facts.run_id)
@@ -136,18 +149,19 @@ class Execution:
         if run.places is not None:
             run.places.close(run.facts.machines)
         parts.runs.remove(run)
+        parts.leases.give_back(run.facts)
         parts.publisher.changed()
         run.ended.set()
 
     def _facts(self, goal: TaskGoal, past: InterruptedRun | None) -> Facts:
-        number = self._parts.numbers.next()
+        number = self._parts.numbers.next(self._parts.leases.last())
         if past is not None and past.header is not None:
             old = past.header
             started = Time(sec=old.started[0], nanosec=old.started[1])
             known = (old.run_id, number, old.task_id, old.description, old.machines, started)
             return Facts(*known, values=dict(old.values))
         stamp = utc_now().strftime("%Y%m%d-%H%M%S")
-        run_id = f"{stamp}-{uuid.uuid4().hex[:4]}"
+        run_id = f"{stamp}-{uuid.uuid4().hex[:4]}{self._parts.leases.scheduler.suffix}"
         return Facts(run_id, number, goal.request.task_id, "", [], self._ros.now())
 
     def _execute(self, run: Run, goal: TaskGoal, past: InterruptedRun | None) -> Ended[ExecuteTask.Result]:
@@ -193,6 +207,7 @@ class Execution:
         run.publish_tree(tree)
         _refuse_errors(run, self._parts.check.before_run(tree))
         self._parts.runs.hold(run)
+        self._parts.leases.take(facts)
 
     def _prepare(self, run: Run, processes: list[str], machines: Machines) -> None:
         """Start the subtasks that the tree names and wait until their servers are there."""

@@ -19,7 +19,9 @@ from tms_reason import wire
 from tms_reason.reason import Reason
 from tms_runtime.app import App
 from tms_runtime.fence import goal_id
+from tms_schedulers.names import schedulers
 from tms_ts.reasons import MachineNotReady
+from tms_ts.run_permit import RunPermit
 
 SETTLE = 0.3  # s from the first message of a new gateway until it has discovered the scheduler, too
 SIGNALS = 100  # messages of all stop buttons that may wait: no `false` of one may push out the `true` of another
@@ -48,10 +50,11 @@ class Gateways:
     def __init__(self, app: App, late_receipt: Callable[[StopReceipt], None]) -> None:
         """`late_receipt` is called with stops that belong to no present run; those that gateways keep come at once."""
         self._app, self._late_receipt = app, late_receipt
+        self._several = len(schedulers(app.site)) > 1
         self._states: dict[str, MachineState] = {}
         self._gateways: dict[str, RemotePermit] = {}
         self._controls: dict[str, Controls] = {}
-        self._permits: dict[str, Permit] = {}
+        self._permits: dict[str, RunPermit] = {}
         self._holders: dict[str, Holder] = {}
         self._pressed: frozenset[str] = frozenset()  # machines whose latch was not shown since the button was pressed
         self._pressed_at = float("-inf")
@@ -64,7 +67,9 @@ class Gateways:
         ros, pulse = self._app.ros, self._app.pulse
         ros.prepare(StopMachine, f"/{machine}/rc/stop")
         self._controls[machine] = Controls(ros, machine, self._app.site.border(machine), keeps_emergency=False)
-        self._permits[machine] = Permit(ros, pulse, machine, "ts", lambda: self._alive(machine))
+        self._permits[machine] = RunPermit(
+            ros, lambda: Permit(ros, pulse, machine, "ts", lambda: self._alive(machine)), self._several
+        )
         self._gateways[machine] = RemotePermit(
             ros, self._app.pulse, machine, "rc", lambda gateway: self._gateway_changed(machine, gateway)
         )

@@ -20,6 +20,7 @@ from tms_ts.group_commit import GroupCommit
 from tms_ts.hosts import Hosts
 from tms_ts.interrupted import Interrupted
 from tms_ts.journal import Journal
+from tms_ts.leases import Leases
 from tms_ts.numbers import Numbers
 from tms_ts.permissions import Permissions
 from tms_ts.place_requests import PlaceRequests
@@ -34,18 +35,18 @@ MEASURE = 1.0  # s between updates of the metrics of runs
 
 
 def start(app: App) -> None:
-    """Serve /tms/execute_task and the services for runs, and tell which nodes trees can have."""
+    """Serve execute_task and the services for runs, and tell which nodes trees can have."""
     parts = _parts(app)
-    scheduler = Scheduler(parts)
-    app.ros.serve(ExecuteTask, "/tms/execute_task", Execution(parts).execute)
-    app.ros.offer(CancelRun, "/tms/cancel_run", scheduler.cancel)
-    app.ros.offer_slow(CheckTask, "/tms/check_task", parts.check.check)
-    app.ros.offer_slow(ResumePlan, "/tms/resume_plan", parts.interrupted.plan)
-    app.ros.offer_slow(CancelRun, "/tms/abandon_run", parts.interrupted.abandon)
-    app.ros.offer(AnswerQuestion, "/tms/answer", scheduler.answer)
-    app.ros.publisher(String, "/tms/palette", depth=1, latched=True).publish(String(data=palette(builtin=True)))
-    Permissions(parts.runs, parts.publisher.questions).serve(app)
-    Blackboards(parts.runs).serve(app)
+    scheduler, named = Scheduler(parts), parts.leases.scheduler.named
+    app.ros.serve(ExecuteTask, named("execute_task"), Execution(parts).execute)
+    app.ros.offer(CancelRun, named("cancel_run"), scheduler.cancel)
+    app.ros.offer_slow(CheckTask, named("check_task"), parts.check.check)
+    app.ros.offer_slow(ResumePlan, named("resume_plan"), parts.interrupted.plan)
+    app.ros.offer_slow(CancelRun, named("abandon_run"), parts.interrupted.abandon)
+    app.ros.offer(AnswerQuestion, named("answer"), scheduler.answer)
+    app.ros.publisher(String, named("palette"), depth=1, latched=True).publish(String(data=palette(builtin=True)))
+    Permissions(parts.runs, parts.publisher.questions).serve(app, parts.leases.scheduler.machines)
+    Blackboards(parts.runs).serve(app, named("blackboard"))
     app.ros.every(MEASURE, scheduler.measure)
     app.on_stop(scheduler.close)
     app.ready_when(scheduler.unready)
@@ -56,16 +57,20 @@ def _parts(app: App) -> Parts:
     hosts, disk = Hosts(ros), GroupCommit(app.log)
     journal, records = Journal(ros, app.log, disk, site.state), Records(site.state, disk)
     records.check()
-    places = PlaceRequests(app, records.names)
+    runs = ActiveRuns()
+    leases = Leases(app, runs)
+    places = PlaceRequests(app, records.names, leases.scheduler.owns)
     interrupted = Interrupted(app, journal, records, places)
     gateways = Gateways(app, interrupted.receipt)
     monitors = Monitors(app.log, site.file.groot.bind, site.file.ports.groot)
     numbers, shared = Numbers(site.state, disk), SharedRecords(ros)
-    runs = ActiveRuns()
-    check, publisher = TaskCheck(app, runs, gateways, places.site), RunsPublisher(ros, runs)
+    check, publisher = (
+        TaskCheck(app, runs, gateways, places.site),
+        RunsPublisher(ros, runs, leases.scheduler.named("runs")),
+    )
     return Parts(
         app, disk, journal, records, numbers, shared, hosts, gateways, monitors, interrupted, runs, publisher, check,
-        places,
+        places, leases,
     )  # fmt: skip
 
 

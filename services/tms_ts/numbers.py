@@ -27,8 +27,10 @@ class Numbers:
         self._last = self._read()
         self._text = b""
 
-    def next(self) -> int:
-        """A number for a new run, on the disk; fits into 48 bits until the year 10889. Waits; from any thread.
+    def next(self, above: int = 0) -> int:
+        """A number for a new run, larger than `above`, on the disk; fits into 48 bits until the year 10889.
+
+        Waits; from any thread.
 
         A number that was lost in a power cut would be given again, and late goals of one run would count as the
         other's.
@@ -37,7 +39,7 @@ class Numbers:
             TaskError: NoDisk.
         """
         with self._giving:
-            self._last = number = max(self._last + 1, unix_ns() // 1_000_000)
+            self._last = number = max(self._last + 1, above + 1, unix_ns() // 1_000_000)
             taken = self._disk.put(self, str(number).encode(), vital=True)
         if not taken or not self._disk.wait(DISK_LIMIT):
             raise no_disk(self._disk)

@@ -1,7 +1,7 @@
 """Serves NextStepPermission: a machine's subtask, or a node of the C++ system, asks a person before it goes on."""
 
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 from tms_msg_ur.action import NextStepPermission
 
@@ -24,9 +24,9 @@ class Permissions:
     def __init__(self, runs: ActiveRuns, questions: Questions) -> None:
         self._runs, self._questions = runs, questions
 
-    def serve(self, app: App) -> None:
+    def serve(self, app: App, machines: Iterable[str]) -> None:
         """Serve the machines that have such a subtask: each action costs every process of the site."""
-        for machine in app.site.file.machines:
+        for machine in sorted(machines):
             model = app.site.model_of(machine)
             if any(model.subtask(name).run == SUBTASK for name in model.subtasks):
                 app.ros.serve(NextStepPermission, f"/{machine}/{REQUEST}", self.run)

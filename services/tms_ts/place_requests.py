@@ -23,9 +23,12 @@ LOOK = 0.05  # s between looks whether something is to be told
 class PlaceRequests:
     """All requests of this scheduler."""
 
-    def __init__(self, app: App, recorded: Callable[[], Iterable[str]]) -> None:
-        """`recorded`: the runs that have not ended, or whose end is to be told yet; it may wait for the disk."""
-        self._app, self._recorded = app, recorded
+    def __init__(self, app: App, recorded: Callable[[], Iterable[str]], own: Callable[[str], bool]) -> None:
+        """`recorded`: own runs that have not ended, or whose end is to be told yet (it may wait for the disk).
+
+        `own`: whether a run is this scheduler's.
+        """
+        self._app, self._recorded, self._own = app, recorded, own
         self._looked = False  # for runs that an earlier scheduler has left
         self._runs: set[str] = set()  # that have wanted places before that
         self._waiting: SimpleQueue[tuple[AskPlaces.Request, Answer[None], Callable[[], None]]] = SimpleQueue()
@@ -62,7 +65,7 @@ class PlaceRequests:
     def _free_left(self) -> None:
         """Free what runs want that are over: the scheduler was killed before it could tell."""
         self._looked = True
-        for run in sorted(self.site.runs - self._runs - set(self._recorded())):
+        for run in sorted(filter(self._own, self.site.runs - self._runs - set(self._recorded()))):
             self._app.log.warning("places_freed", run=run)
             self.put(AskPlaces.Request(run=run, hold=False))
 

@@ -1,4 +1,4 @@
-"""Publishes the active runs: the latched topic /tms/runs and the metrics."""
+"""Publishes the active runs: the latched topic and the metrics."""
 
 import threading
 from collections import Counter
@@ -21,11 +21,11 @@ SHORTEST_PERIOD = 0.05  # s ... and with changes all the time
 class RunsPublisher:
     """Publishes changes at once, but not more often than a person can see."""
 
-    def __init__(self, ros: Ros, runs: ActiveRuns) -> None:
+    def __init__(self, ros: Ros, runs: ActiveRuns, topic: str) -> None:
         self._runs = runs
         self._changed, self._closing = threading.Event(), threading.Event()
         self.questions = Questions(ros, self._changed.set)
-        self._publisher = ros.publisher(RunStates, "/tms/runs", depth=1, latched=True)
+        self._publisher = ros.publisher(RunStates, topic, depth=1, latched=True)
         threading.Thread(target=self._publish, name="runs", daemon=True).start()
 
     def changed(self) -> None:

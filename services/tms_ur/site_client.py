@@ -38,6 +38,9 @@ from tms_reason import wire
 from tms_reason.errors import TmsError
 from tms_reason.reason import Reason
 from tms_ros.node import Ros
+from tms_schedulers.asking import of_first
+from tms_schedulers.hearing import hear_runs
+from tms_schedulers.names import schedulers
 from tms_ur import alarm_topics, messages
 from tms_ur.answers import checked
 from tms_ur.area_client import check_areas, enable_areas
@@ -70,7 +73,7 @@ class SiteClient(MachineCalls):
     """The site as the API sees it."""
 
     def __init__(self, ros: Ros, site: Site) -> None:
-        super().__init__(ros)
+        super().__init__(ros, site)
         self._machines = names = list(site.file.machines)
         self.board = Board(names)
         self._on_demand = {row.full for row in table(site) if not row.autostart}
@@ -85,8 +88,9 @@ class SiteClient(MachineCalls):
             ros.prepare(StopMachine, f"/{name}/rc/stop")
             if site.file.ground is not None:
                 ros.subscribe(SoilLoad, f"/{name}/soil_load", partial(self._on_load, name), latched=True)
-        ros.subscribe(RunStates, "/tms/runs", self._on_runs, latched=True)
-        ros.subscribe(String, "/tms/palette", self._on_palette, latched=True)
+        hear_runs(ros, site, self._on_runs)
+        for one in schedulers(site):  # which all tell the same
+            ros.subscribe(String, one.named("palette"), self._on_palette, latched=True)
         ros.subscribe(Processes, "/tms/host/processes", self._on_processes, depth=10, latched=True)
         ros.subscribe(InputStates, "/tms/sp/inputs", self._on_inputs, latched=True)
         ros.poll_in_thread(PERIOD, self._update_places, "places")
@@ -209,7 +213,8 @@ class SiteClient(MachineCalls):
 
     def check_task(self, xml: str, motions: bool = True) -> tuple[list[Reason], list[Reason]]:
         """Errors and warnings of a tree, with or without its motions; nothing is stored and nothing runs."""
-        answer = self._ask(CheckTask, "/tms/check_task", xml=xml, without_motions=not motions)
+        asked = {"xml": xml, "without_motions": not motions}
+        answer = of_first(self._site, lambda one: self._ask(CheckTask, one.named("check_task"), **asked))
         return list(map(wire.known, answer.errors)), list(map(wire.known, answer.warnings))
 
     # machines

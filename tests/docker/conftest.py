@@ -39,6 +39,18 @@ def yard_apart(image: None) -> Iterator[Yard]:
         yield site
 
 
+@pytest.fixture(scope="module")
+def yard_of_two(image: None) -> Iterator[Yard]:
+    """A site whose only machine has a scheduler of its own, on a PC of its own."""
+    pcs = {
+        "cps": {"roles": ["cps", "sensing"]},
+        "machine": {"roles": ["machine", "sim"]},
+        "north": {"roles": ["scheduler"], "machines": ["zx200"]},
+    }
+    with running(pcs=pcs) as site:
+        yield site
+
+
 @contextmanager
 def running(**changes: Any) -> Iterator[Yard]:
     """A site, which is gone afterwards; its logs stay in the folder that TMS_LOGS names."""

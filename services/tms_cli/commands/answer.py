@@ -37,7 +37,8 @@ def command(reply: str | None, question: str | None, as_json: bool) -> None:
         if reply is not None:
             one = _only(asked, question)
             by = f"{getpass.getuser()} at {socket.gethostname()}"
-            session.call(node, AnswerQuestion, "/tms/answer", id=one.id, yes=reply == "yes", by=by)
+            answer = {"id": one.id, "yes": reply == "yes", "by": by}
+            session.of_any(node, AnswerQuestion, "answer", "NO_QUESTION", **answer)
     if as_json:
         session.show_json([_as_dict(one) for one in asked])
     elif reply is not None:
@@ -56,9 +57,7 @@ def open_questions(node: "Ros") -> "list[Question]":
     Raises:
         RosError: the scheduler does not publish them.
     """
-    from tms_msg_ts.msg import RunStates
-
-    received = session.latched(node, RunStates, "/tms/runs")
+    received = session.runs(node)
     if received is None:
         raise RosError(SchedulerSilent(), "NO_ANSWER")
     return list(received.questions)

@@ -22,11 +22,9 @@ CHECK_PERIOD = 0.2  # s
 
 def _which(node: "Ros", word: str) -> str:
     """The id of the run, from the scheduler: a cancel must not wait for the database, which knows of ended ones."""
-    from tms_msg_ts.msg import RunStates
-
     from tms_machine import stamps
 
-    told = session.latched(node, RunStates, "/tms/runs", session.CALL_LIMIT)
+    told = session.runs(node, session.CALL_LIMIT)
     active = [] if told is None else sorted(told.runs, key=lambda run: stamps.seconds(run.started_at), reverse=True)
     if word == "last" and not active:
         raise RosError(SchedulerSilent(), "NO_ANSWER") if told is None else TmsError(NoRunActive(), "NO_RUN")
@@ -79,7 +77,7 @@ def command(ctx: click.Context, run: str, as_json: bool) -> None:
 
     with session.ros() as node:
         run_id = _which(node, run)
-        session.call(node, CancelRun, "/tms/cancel_run", run_id=run_id)
+        session.of_any(node, CancelRun, "cancel_run", "NO_RUN", run_id=run_id)
         click.echo(say("run {run} is being cancelled", run=run_id), err=True)
         ended = _wait(node, run_id)
     if as_json:

@@ -7,6 +7,8 @@ import click
 from tms_cli import live, session
 from tms_cli.commands.run import Runner, report
 from tms_cli.words import say
+from tms_schedulers import asking
+from tms_schedulers.names import Scheduler
 
 if TYPE_CHECKING:
     from tms_msg_ts.srv import ResumePlan
@@ -16,15 +18,18 @@ if TYPE_CHECKING:
 SHOWN = 3  # leaves that are named among those that are not repeated
 
 
-def plan(node: "Ros", run_id: str) -> "ResumePlan.Response":
-    """Get the plan of resuming a run.
+def plan(node: "Ros", run_id: str) -> "tuple[Scheduler, ResumePlan.Response]":
+    """The scheduler that has an interrupted run, and its plan of resuming it.
 
     Raises:
         TmsError: NO_RUN.
     """
     from tms_msg_ts.srv import ResumePlan
 
-    return session.call(node, ResumePlan, "/tms/resume_plan", run_id=run_id)
+    def ask(one: Scheduler) -> "tuple[Scheduler, ResumePlan.Response]":
+        return one, session.call(node, ResumePlan, one.named("resume_plan"), run_id=run_id)
+
+    return asking.of_any(session.site(), ask, "NO_RUN")
 
 
 def _say(text: str) -> None:
@@ -62,11 +67,11 @@ def command(ctx: click.Context, run: str, yes: bool, wait: bool, as_json: bool) 
       tms resume 20260131-060000-1a2b --wait
     """
     with session.ros() as node:
-        found = plan(node, run)
+        scheduler, found = plan(node, run)
         _explain(found)
         if not yes:
             click.confirm(say("Resume it now?"), abort=True, err=True)
-        runner = Runner(node, found.task_id, ignore_warnings=True, resume=run)
+        runner = Runner(node, found.task_id, ignore_warnings=True, resume=run, scheduler=scheduler)
         end = runner.finish(live.display(as_json)) if wait else runner.begin()
     report(end, as_json)
     ctx.exit(end.exit_code)

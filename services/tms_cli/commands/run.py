@@ -17,6 +17,9 @@ from tms_reason import wire
 from tms_reason.errors import TmsError
 from tms_reason.reason import Reason
 from tms_runtime.reasons import NotStored
+from tms_schedulers import asking
+from tms_schedulers.names import Scheduler, schedulers
+from tms_schedulers.reasons import OtherScheduler
 
 if TYPE_CHECKING:
     from tms_msg_db.msg import Run
@@ -25,7 +28,6 @@ if TYPE_CHECKING:
     from tms_ros.node import Ros
     from tms_ts.bt import Templates
 
-ACTION = "/tms/execute_task"
 SERVER_LIMIT = 5.0  # s
 CHECK_PERIOD = 0.1  # s between checks
 SILENT = 10.0  # s without a message of the scheduler, which publishes its runs twice a second
@@ -55,9 +57,13 @@ class End:
 class Runner:
     """Sends one task to the scheduler and follows it."""
 
-    def __init__(self, node: "Ros", task_id: int, ignore_warnings: bool, resume: str = "") -> None:
+    def __init__(
+        self, node: "Ros", task_id: int, ignore_warnings: bool, resume: str = "", scheduler: Scheduler | None = None
+    ) -> None:
+        """`scheduler`: the one to which the run belongs; without it, the one that is asked first says which."""
         from tms_msg_ts.action import ExecuteTask
-        from tms_msg_ts.msg import RunStates
+
+        from tms_schedulers.hearing import hear_runs
 
         self._node = node
         self._feedback: queue.SimpleQueue[ExecuteTask.Feedback] = queue.SimpleQueue()
@@ -65,12 +71,20 @@ class Runner:
         self._asked_again = False
         self._reported: Run | None = None  # the run in the history, for the case that its result never comes
         self.view = _view(node, task_id)
-        self._peer = node.peer(ExecuteTask, ACTION)
+        self._goal = ExecuteTask.Goal(task_id=task_id, ignore_warnings=ignore_warnings, resume=resume)
+        if scheduler is None:
+            asking.of_first(session.site(), self._send)
+        else:
+            self._send(scheduler)
+        hear_runs(node, session.site(), self._list_received)
+
+    def _send(self, scheduler: Scheduler) -> None:
+        from tms_msg_ts.action import ExecuteTask
+
+        self._peer = self._node.peer(ExecuteTask, scheduler.named("execute_task"))
         self._peer.wait_ready(SERVER_LIMIT)
-        goal = ExecuteTask.Goal(task_id=task_id, ignore_warnings=ignore_warnings, resume=resume)
-        self._call = self._peer.send(goal, on_feedback=self._feedback.put)
+        self._call = self._peer.send(self._goal, on_feedback=self._feedback.put)
         self._received_at = self._listed_at = monotonic()
-        node.subscribe(RunStates, "/tms/runs", self._list_received, latched=True)
 
     def begin(self) -> End:
         """Return when the run has begun or was refused. Ctrl-C cancels it."""
@@ -114,7 +128,7 @@ class Runner:
             self._peer.cancel(self._call)
             return
         try:
-            session.call(self._node, CancelRun, "/tms/cancel_run", run_id=self.view.run_id)
+            session.of_any(self._node, CancelRun, "cancel_run", "NO_RUN", run_id=self.view.run_id)
         except TmsError as error:
             click.echo(
                 say("tms: the cancel did not get through: {error}; trying the action itself", error=error), err=True
@@ -147,6 +161,10 @@ class Runner:
         raise TmsError(lost, "SCHEDULER_LOST")
 
     def _over(self) -> bool:
+        result = self._call.result
+        why = None if result is None or result.outcome != "refused" else wire.of(result.error_msg)
+        if isinstance(why, OtherScheduler):
+            self._send(next(one for one in schedulers(session.site()) if one.process == why.scheduler))
         return self._call.outcome is not None or self._reported is not None
 
     def _in_history(self) -> "Run | None":

@@ -22,6 +22,7 @@ from tms_reason import wire
 from tms_reason.errors import TmsError
 from tms_ros.client import Call
 from tms_ros.node import Ros
+from tms_schedulers.names import responsible
 from tms_ts.reasons import StateBecause
 
 ARM_LIMIT = 30.0  # s for the machine to be armed again
@@ -47,7 +48,7 @@ class Work:
             stored_records.write(node, (machine, name), values, create=True, type=kind, description="stop drill")
         stored = session.call(node, AddTask, "/tms/db/add_task", task_sequence=tree, description=f"drill {machine}")
         self._task = stored.task_id
-        self._peer = node.peer(ExecuteTask, "/tms/execute_task")
+        self._peer = node.peer(ExecuteTask, responsible(site, [machine]).named("execute_task"))
         stand_in = site.file.backend == "sim"
         self._fault = node.publisher(String, f"/{machine}/sim/fault") if stand_in else None
         self._call: Call[ExecuteTask.Result, ExecuteTask.Feedback] | None = None
@@ -116,7 +117,7 @@ class Work:
                 raise TmsError(RunDoesNotEnd(str(self._run)))
             sleep(CHECK_PERIOD)
         if self._recorded() == INTERRUPTED:
-            session.call(self._node, CancelRun, "/tms/abandon_run", run_id=self._run)
+            session.of_any(self._node, CancelRun, "abandon_run", "NO_RUN", run_id=self._run)
         self._call = None
 
     def _recorded(self) -> str:

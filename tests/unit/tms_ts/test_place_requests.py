@@ -30,7 +30,7 @@ class Keeper:
             subscribe=lambda _type, _name, heard, **_: setattr(self, "tell", heard),
         )
         self.app: Any = SimpleNamespace(ros=ros, stopping=threading.Event(), log=structlog.get_logger())
-        self.requests = PlaceRequests(self.app, lambda: ["interrupted"])
+        self.requests = PlaceRequests(self.app, lambda: ["interrupted"], lambda run: not run.endswith("-east"))
 
     def _ask(self, _ros: Any, _kind: Any, name: str, request: Any, _limit: float) -> Any:
         self.away -= 1
@@ -83,7 +83,7 @@ def test_what_a_run_wanted_that_ended_under_an_earlier_scheduler_is_freed(monkey
     keeper.send()
     queue = [PlaceRequest(machine="b", run="new"), PlaceRequest(machine="c", run="ended too")]
     held = [Place(name="road", holder="a", run="ended", queue=queue), Place(name="yard", holder="d", run="interrupted"),
-            Place(name="gate", holder="e")]  # fmt: skip
+            Place(name="gate", holder="e"), Place(name="hall", holder="f", run="other's-east")]  # fmt: skip
     keeper.tell(Places(revision=1, places=held))
     keeper.send()
     keeper.tell(Places(revision=2, places=held))

@@ -1,0 +1,1 @@
+"""Several schedulers of one site: which machines are whose, leases of machines, and how clients find a run."""
