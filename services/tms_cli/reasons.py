@@ -57,8 +57,6 @@ class ManyRuns(Reason, text="'{run}' fits {count} runs ({runs}, ...)", action=MO
 class TaskUnknown(Reason, text="there is no task {task}", action=TASKS): task: str
 
 # processes of this PC
-class MachineUnknown(Reason, text="the site has no machine '{name}' (there: {machines})"):
-    name: str; machines: tuple[str, ...]
 class NoPcs(Reason, text="{file} has no pcs:", action=NO_ROLE): file: str
 class NotWritable(Reason, text="{file} cannot be written ({problem})", action=OTHER_PLACE): file: str; problem: str
 class StateNotWritable(Reason, text="{folder} cannot be written ({problem})", action=STATE_ELSEWHERE):

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from tms_cli.reasons import MachineUnknown
 from tms_config.config import Site, load_site
+from tms_config.reasons import NoMachine
 from tms_interfaces.generated import M, Reply, Req, ServiceType
 from tms_reason import wire
 from tms_reason.errors import ConfigError, TmsError
@@ -66,7 +66,7 @@ def machines(names: tuple[str, ...], every: bool) -> list[str]:
         raise click.UsageError("name a machine, or give --all")
     for name in names:
         if name not in known:
-            raise ConfigError(MachineUnknown(name, tuple(known)))
+            raise ConfigError(NoMachine(name, tuple(known)))
     return list(names)
 
 

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from tms_cli import live, session, words
-from tms_cli.reasons import MachineUnknown
 from tms_cli.words import say
+from tms_config.reasons import NoMachine
 from tms_decision.reasons import SoftwareStop
 from tms_reason.errors import ConfigError, RosError
 from tms_reason.wire import to_line
@@ -86,7 +86,7 @@ def command(ctx: click.Context, machine: str | None, as_json: bool) -> None:
     """
     machines = list(session.site().file.machines)
     if machine is not None and machine not in machines:
-        raise ConfigError(MachineUnknown(machine, tuple(machines)))
+        raise ConfigError(NoMachine(machine, tuple(machines)))
     with session.ros() as node:
         receipts = stop_all(node, machines if machine is None else [machine])
     if as_json:

@@ -110,7 +110,7 @@ def test_a_record_that_fits_several_subtasks_needs_one_of_them(asked: list[str])
         (("zx200", "flag"), "FOR_NO_ARM"),
         (("zx200", "flag", "--subtask", "subtask_zx200_release_simple"), "RECORD_UNFIT_FOR"),
         (("zx200", "flag", "--subtask", "fly"), "WHICH_SUBTASK"),
-        (("zx999", "x"), "MACHINE_UNKNOWN"),
+        (("zx999", "x"), "NO_MACHINE"),
         (("zx200", "missing"), "BUSY"),
     ],
 )

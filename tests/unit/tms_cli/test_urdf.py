@@ -32,5 +32,5 @@ def test_a_machine_is_written_once(here: Path) -> None:
 
 def test_a_machine_that_the_site_has_not(here: Path) -> None:
     done = CliRunner().invoke(tms, ["urdf", "zx999"])
-    assert isinstance(done.exception, TmsError) and done.exception.code == "MACHINE_UNKNOWN"
+    assert isinstance(done.exception, TmsError) and done.exception.code == "NO_MACHINE"
     assert list(here.iterdir()) == []
