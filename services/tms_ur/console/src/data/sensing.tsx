@@ -1,33 +1,22 @@
 // The sensing inputs: what comes, how often, and what was refused.
 import { duration } from "old/dom.js";
-import { useEffect, useState } from "react";
 import { useTranslation } from "react-i18next";
 import { Badge } from "../badge";
 import type { SensingInput } from "../models";
 import { Problem } from "../problem";
-import { repeated } from "../repeated";
 import { Said } from "../said";
 import { get } from "../server";
 import { Table } from "../table";
+import { useRepeated } from "../use_repeated";
 
 const EVERY = 2000; // ms
 
-function useInputs() {
-  const [inputs, setInputs] = useState<SensingInput[] | null>(null);
-  const [error, setError] = useState<Error | null>(null);
-  useEffect(() => {
-    const took = (found: { inputs: SensingInput[] }) => {
-      setInputs(found.inputs);
-      setError(null);
-    };
-    return repeated(() => get("/api/sensing"), took, setError, EVERY);
-  }, []);
-  return { inputs, error };
-}
+const ask = () => get("/api/sensing");
 
 export function Sensing() {
   const { t } = useTranslation();
-  const { inputs, error } = useInputs();
+  const { found, error } = useRepeated(ask, EVERY);
+  const inputs = found?.inputs;
   return (
     <>
       <h2>{t("sensing")}</h2>

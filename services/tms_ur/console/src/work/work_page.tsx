@@ -1,35 +1,23 @@
 // Work: what the machines have moved on a day, beside what was planned for it.
-import { useEffect, useState } from "react";
+import { useCallback } from "react";
 import { useTranslation } from "react-i18next";
 import { Downloads } from "../downloads";
 import type { Work, WorkSum } from "../models";
 import { Problem } from "../problem";
-import { repeated } from "../repeated";
 import { get } from "../server";
 import { Table } from "../table";
+import { useRepeated } from "../use_repeated";
 import { dayBeside, hoursOf, partsOf } from "./days";
 import "./work.css";
 
 const EVERY = 30_000; // ms between two looks at today
 const HEADS = ["cycles", "bank_m3", "loose_m3", "mass_t", "fill", "truck_loads", "km", "bank_per_hour", "cycle_s"];
 
-/** `day`: empty for today. */
-function useWork(day: string): { work: Work | null; error: Error | null } {
-  const [work, setWork] = useState<Work | null>(null);
-  const [error, setError] = useState<Error | null>(null);
-  useEffect(() => {
-    const took = (found: Work) => {
-      setWork(found);
-      setError(null);
-    };
-    return repeated(() => get("/api/work", {}, day && `day=${day}`), took, setError, day === "" ? EVERY : null);
-  }, [day]);
-  return { work, error };
-}
-
+/** `rest`: a day, empty for today. */
 export default function WorkPage({ rest }: { rest: string }) {
   const { t, i18n } = useTranslation();
-  const { work, error } = useWork(rest);
+  const ask = useCallback(() => get("/api/work", {}, rest && `day=${rest}`), [rest]);
+  const { found: work, error } = useRepeated(ask, rest === "" ? EVERY : null);
   const report = (day: string, form: string) => `/api/work/report?day=${day}&form=${form}&language=${i18n.language}`;
   return (
     <>
