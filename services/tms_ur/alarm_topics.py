@@ -1,4 +1,4 @@
-"""What only alarms need of the site: topics of host agents and of tms:sp, and what Prometheus tells.
+"""What only alarms need of the site: topics of host agents, and what Prometheus tells.
 
 Rules are judged also while no console is open.
 """
@@ -7,7 +7,6 @@ from collections.abc import Iterable
 from functools import partial
 
 from std_msgs.msg import Bool
-from tms_msg_sp.msg import InputStates
 
 from tms_config.clock import utc_now
 from tms_machine.border import standby
@@ -23,7 +22,6 @@ def listen(ros: Ros, machines: Iterable[str], board: Board, prometheus: str) -> 
     """Keep the board up to date with it; `prometheus`: its address, empty where the site names none."""
     for name in machines:
         ros.subscribe(Bool, standby(name), partial(_on_standby, board, name), latched=True)
-    ros.subscribe(InputStates, "/tms/sp/inputs", partial(_on_inputs, board), latched=True)
     ros.poll_in_thread(PERIOD, board.snapshot, "alarms")
     if prometheus:
         ros.poll_in_thread(ASKED, lambda: board.put_told(alarms(prometheus, utc_now())), "prometheus")
@@ -31,7 +29,3 @@ def listen(ros: Ros, machines: Iterable[str], board: Board, prometheus: str) -> 
 
 def _on_standby(board: Board, machine: str, message: Bool) -> None:
     board.put_standing_in(machine, message.data)
-
-
-def _on_inputs(board: Board, message: InputStates) -> None:
-    board.put_inputs({one.name: one.state for one in message.inputs})

@@ -120,6 +120,7 @@ class SiteClient(MachineCalls):
 
     def _on_inputs(self, message: InputStates) -> None:
         self._inputs = (list(message.inputs), monotonic())
+        self.board.put_inputs({one.name: one.state for one in message.inputs})
 
     def _update_places(self) -> None:
         for name, way in self._ways.take():

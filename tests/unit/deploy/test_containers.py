@@ -138,5 +138,6 @@ def test_the_firewall_lets_the_pcs_ask_the_cps_pc_for_the_time() -> None:
 
 def test_the_example_site_is_right_and_listens_on_its_own_addresses_only() -> None:
     site = load_site("yard")
-    assert set(site.file.pcs) == set(ROLES) and site.file.bind == "127.0.0.1"
+    usual = set(ROLES) - {"scheduler"}  # most sites need no second one
+    assert set(site.file.pcs) == usual and site.file.bind == "127.0.0.1"
     assert next(row.pc for row in table(site) if row.full == "tms:sp") == "sensing"

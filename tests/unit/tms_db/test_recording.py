@@ -22,6 +22,7 @@ from tms_db.recordings import thinned
 NOON = datetime(2026, 1, 31, 12, tzinfo=timezone.utc)
 NAMES = ("boom_joint", "arm_joint")
 LOG = structlog.stdlib.get_logger("test")
+ONE_PC = SimpleNamespace(file=SimpleNamespace(machines=(), pcs={}))
 LIMIT = 30.0  # s
 
 
@@ -163,7 +164,7 @@ def test_machines_are_heard_only_around_a_run(connection: Away, monkeypatch: pyt
     monkeypatch.setattr(recorder, "utc_now", lambda: datetime.fromtimestamp(now[0], timezone.utc))
     connection.there.set()
     db: Any = mongomock.MongoClient(tz_aware=True)["rostmsdb"]
-    made = recorder.Recorder(SimpleNamespace(ros=topics, site=None, log=LOG), db, connection)  # type: ignore[arg-type]
+    made = recorder.Recorder(SimpleNamespace(ros=topics, site=ONE_PC, log=LOG), db, connection)  # type: ignore[arg-type]
 
     def go(seconds: float) -> None:
         for _ in range(round(seconds * 10)):

@@ -66,7 +66,7 @@ def test_a_gateway_that_has_missed_a_press_is_asked_to_latch(monkeypatch: pytest
     monkeypatch.setattr(gateways, "RemotePermit", made)
     for name in ("Controls", "Permit"):
         monkeypatch.setattr(gateways, name, lambda *_, **__: QUIET)
-    site = SimpleNamespace(file=SimpleNamespace(machines=["zx200", "ic120"]), border=lambda _: None)
+    site = SimpleNamespace(file=SimpleNamespace(machines=["zx200", "ic120"], pcs={}), border=lambda _: None)
     ros = FakeRos()
     app: Any = SimpleNamespace(ros=ros, pulse=None, site=site, log=QUIET)
     known = Gateways(app, lambda _: None)

@@ -89,9 +89,12 @@ def parts(rows: list[Any], **own: Any) -> Any:
     record = SimpleNamespace(event=lambda _: None, over=lambda *_: None, remove=lambda: None)
     there = {
         "app": app, "disk": SimpleNamespace(wait=lambda _: True), "journal": SimpleNamespace(put=rows.append),
-        "records": SimpleNamespace(open=lambda _: record), "numbers": SimpleNamespace(next=lambda: 1),
+        "records": SimpleNamespace(open=lambda _: record), "numbers": SimpleNamespace(next=lambda _: 1),
         "gateways": SimpleNamespace(drop=lambda _: None), "publisher": SimpleNamespace(changed=lambda: None),
         "check": SimpleNamespace(task=lambda _: broken()),
+        "leases": SimpleNamespace(
+            several=False, last=lambda: 0, give_back=lambda _: None, scheduler=SimpleNamespace(suffix="")
+        ),
     }  # fmt: skip
     return SimpleNamespace(**{**there, **own})
 

@@ -59,7 +59,8 @@ def execution(stored: Stored) -> Execution:
     check.task = lambda _: Task(description="digs", task_sequence=CALLS)  # type: ignore[method-assign]
     check.before_run = lambda _: Findings()  # type: ignore[method-assign]
     runs = SimpleNamespace(hold=lambda _: None)
-    return Execution(SimpleNamespace(app=SimpleNamespace(ros=None), check=check, runs=runs))  # type: ignore[arg-type]
+    leases = SimpleNamespace(take=lambda _: None)
+    return Execution(SimpleNamespace(app=SimpleNamespace(ros=None), check=check, runs=runs, leases=leases))  # type: ignore[arg-type]
 
 
 def facts() -> Facts:

@@ -1,10 +1,9 @@
-"""What host agents and tms:sp tell reaches the alarms, and the rules are judged without a console."""
+"""What host agents tell reaches the alarms, and the rules are judged without a console."""
 
 from collections.abc import Callable
 from typing import Any
 
 from std_msgs.msg import Bool
-from tms_msg_sp.msg import InputState, InputStates
 
 from tms_ur.alarm_topics import listen
 from tms_ur.board import Board
@@ -29,13 +28,12 @@ def test_topics_become_alarms_also_while_no_console_is_open() -> None:
     now = [100.0]
     board, ros = Board([], lambda: now[0]), FakeRos()
     listen(ros, ["zx200"], board, "")  # type: ignore[arg-type]
-    told = InputStates(inputs=[InputState(name="pile", state="silent"), InputState(name="rain", state="alive")])
     board.put_runs([])
-    ros.callbacks["/tms/sp/inputs"](told)
+    board.put_inputs({"pile": "silent", "rain": "alive"})
     ros.steps[0]()
     now[0] += 4
     board.put_runs([])
-    ros.callbacks["/tms/sp/inputs"](told)
+    board.put_inputs({"pile": "silent", "rain": "alive"})
     ros.callbacks["/zx200/rc/standby"](Bool(data=True))
     now[0] += 1
     found = [(alarm.name, alarm.subject) for alarm in board.snapshot().alarms]

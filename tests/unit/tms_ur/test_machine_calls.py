@@ -19,7 +19,8 @@ def calls(answer: TakeMachine.Response, asked: list[tuple[str, str, bool]]) -> M
         return answer
 
     ros: Any = SimpleNamespace(peer=lambda *_: None, call=call)
-    return MachineCalls(ros)
+    site: Any = SimpleNamespace(file=SimpleNamespace(machines=(), pcs={}))
+    return MachineCalls(ros, site)
 
 
 def test_a_machine_is_given_back_with_a_receipt() -> None:

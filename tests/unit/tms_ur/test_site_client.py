@@ -1,11 +1,13 @@
 """Where the console shows machines: as their pose topics tell, or /tf."""
 
+from collections.abc import Callable
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
 from geometry_msgs.msg import PoseStamped, TransformStamped
 from tf2_msgs.msg import TFMessage
+from tms_msg_sp.msg import InputState, InputStates
 
 from tms_config.clock import monotonic
 from tms_config.models import Border, Source
@@ -31,20 +33,37 @@ def framed(x: float) -> TFMessage:
     return TFMessage(transforms=[one])
 
 
-def test_places_of_machines_and_their_ages(monkeypatch: pytest.MonkeyPatch) -> None:
+def client(monkeypatch: pytest.MonkeyPatch) -> tuple[SiteClient, dict[str, Callable[[Any], None]]]:
+    """The client of a site with two machines, and what it does with messages, by topic."""
+    heard: dict[str, Callable[[Any], None]] = {}
     monkeypatch.setattr("tms_ur.site_client.table", lambda _: [])
     ros: Any = SimpleNamespace(
-        peer=lambda *_: None, subscribe=lambda *_, **__: None, prepare=lambda *_: None,
+        peer=lambda *_: None, subscribe=lambda _, topic, hear, **__: heard.update({topic: hear}),
+        prepare=lambda *_: None,
         sample_arrivals=lambda _, topic: lambda: [Arrival(posed(1.234), monotonic() - AGE, 1)],
         sample=lambda kind, *_: lambda: [framed(5.0)] if kind is TFMessage else [],
         poll_in_thread=lambda _, step, __: step(),
     )  # fmt: skip
     machines = {name: SimpleNamespace(hardware={}) for name in BORDERS}
-    file = SimpleNamespace(machines=machines, ground=None, console=Console())
+    file = SimpleNamespace(machines=machines, ground=None, console=Console(), pcs={})
     site: Any = SimpleNamespace(file=file, border=BORDERS.__getitem__, area_files=[])
-    shown = {machine.name: machine for machine in SiteClient(ros, site).board.snapshot().machines}
+    return SiteClient(ros, site), heard
+
+
+def test_places_of_machines_and_their_ages(monkeypatch: pytest.MonkeyPatch) -> None:
+    made, _ = client(monkeypatch)
+    shown = {machine.name: machine for machine in made.board.snapshot().machines}
     assert {name: one.place for name, one in shown.items()} == {
         "digger": Place(x=1.23, y=0.0, yaw=0.0), "dump": Place(x=5.0, y=0.0, yaw=0.0),
     }  # fmt: skip
     ages = {name: one.place_age for name, one in shown.items()}
     assert ages["digger"] is not None and ages["digger"] >= AGE and ages["dump"] is not None
+
+
+def test_sensing_inputs_reach_the_page_and_the_alarms(monkeypatch: pytest.MonkeyPatch) -> None:
+    made, heard = client(monkeypatch)
+    alarms: dict[str, str] = {}
+    monkeypatch.setattr(made.board, "put_inputs", alarms.update)
+    heard["/tms/sp/inputs"](InputStates(inputs=[InputState(name="pile", state="silent")]))
+    assert alarms == {"pile": "silent"}
+    assert [(one.name, one.state) for one in made.sensing().inputs] == [("pile", "silent")]
