@@ -19,7 +19,7 @@ COSTS = {  # s of a processor, where a file takes many
     "test_v6_tasks": 229, "test_official_tasks": 183, "test_console": 159, "test_earthwork": 149,
     "test_every_subtask": 145, "test_made_up": 86, "test_several_losses": 78, "test_shared_places": 77,
     "test_power_cut": 71, "test_losses": 67, "test_sensing": 56, "test_receipts": 51, "test_leaf_forms": 51,
-    "test_mesh": 50, "test_board": 40, "test_rp_sim": 40, "test_areas": 35, "test_login": 34,
+    "test_mesh": 50, "test_board": 40, "test_rp_sim": 40, "test_areas": 35, "test_login": 34, "test_two_schedulers": 35,
     "test_version6_planner": 33, "test_mc": 31, "test_views": 27, "test_stop": 27, "test_readme": 26,
     "test_extending": 25, "test_mc_losses": 25, "test_roles": 25, "test_accessible": 22, "test_ground": 19,
     "test_first_trial": 17, "test_stand_in": 16, "test_ur_crowd": 15, "test_refusals": 14, "test_paper": 13,

@@ -152,8 +152,10 @@ def _services(site: Site) -> list[Process]:
         if isinstance(service, Bridge) and service.trial:
             rows.append(Process("sim", "operasim", "sim", "tms_if.trial", 0, PURPOSES["operasim"], ours=False))
         rows += [replace(row, name=f"host_{pc}", role=roles(pc, facts)[0], pc=pc) for pc, facts in several] or [row]
-        more = [pc for pc, facts in site.file.pcs.items() if name == "ts" and "scheduler" in roles(pc, facts)]
-        rows += [replace(row, name=f"ts_{pc}", role="scheduler", pc=pc) for pc in more]
+        at = [pc for pc, facts in site.file.pcs.items() if name == "ts" and "scheduler" in roles(pc, facts)]
+        rows += [replace(row, name=f"ts_{pc}", role="scheduler", pc=pc) for pc in at]
+        for one in (one for one in site.file.machines if sum(one in site.file.pcs[pc].machines for pc in at) > 1):
+            raise ConfigError(located(site.path, reasons.ManyPcsFor(tuple(at), f"tasks of {one}", "scheduler"), "pcs"))
     return rows
 
 

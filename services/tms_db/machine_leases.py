@@ -47,7 +47,7 @@ class MachineLeases:
                     changed = book.wanted(lease, request.machines, now)
                 if changed:
                     self._write({**book.leases, **changed})
-                book.put(changed, request.machines, now)
+                book.put(changed, () if request.over else request.machines, now)
                 response.last, response.seconds = book.last, LEASE
         except TmsError as error:
             response.error_code, response.error_msg = error.code, to_line(error.reason)

@@ -1,130 +1,136 @@
 """Two schedulers share a site by machine: each task is run by its own, and no machine by both."""
 
 import json
-import os
-import signal
-import urllib.request
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import pytest
 import yaml
 
+import programs
 from conftest import CLI, PROJECT, Mesh, claimed_domain, ports_of, site_data, wait_until
 from tms_config.config import load_site
 from tms_config.processes import find
+from tms_runtime import environment
+from tms_runtime.metrics import unready
 
 pytestmark = pytest.mark.turns
 
 DATA = PROJECT / "tests" / "data"
+EAST = "tms:ts_east"
 PCS = {
-    "cps": {"address": "127.0.0.1", "roles": ["cps", "machine", "sim"]},
-    "east": {"address": "127.0.0.2", "roles": ["scheduler"], "machines": ["east_zx200"]},
+    "cps": {"address": "127.0.0.1", "roles": ["cps", "machine", "sensing", "sim"]},
+    "east": {"address": "127.0.0.1", "roles": ["scheduler"], "machines": ["east_zx200"]},
 }
-MACHINES = {"zx200": {"model": "zx200"}, "east_zx200": {"model": "zx200"}}
-BOTH = (
-    '<root main_tree_to_execute="M"><BehaviorTree ID="M"><Sequence>'
-    '<Action ID="LeafNodeZx200" model_name="zx200" record_name="SWING_LEFT" subtask_name="subtask_zx200_swing"/>'
-    '<Action ID="LeafNodeZx200" model_name="east_zx200" record_name="SWING_LEFT" subtask_name="subtask_zx200_swing"/>'
-    "</Sequence></BehaviorTree></root>"
-)
+MACHINES = {"zx200": {"model": "zx200"}, "east_zx200": {"model": "zx200", "start": [20.0, 0.0, 0.0]}}
+LEAF = '<Action ID="LeafNodeZx200" model_name="{}" record_name="swing_left" subtask_name="subtask_zx200_change_pose"/>'
+TREE = '<root main_tree_to_execute="M"><BehaviorTree ID="M"><Sequence>{}</Sequence></BehaviorTree></root>'
+MINE, THEIRS, BOTH = "1", "2", "3"
 
 
 @dataclass
-class Pc(Mesh):
-    """One PC of the site."""
+class Cps(Mesh):
+    """The main PC, and the scheduler of the other one, which is a process of its own here."""
 
-    name: str
+    east: list[programs.Program] = field(default_factory=list)
 
     @property
     def env(self) -> dict[str, str]:
-        return {**super().env, "TMS_PC": self.name}
+        return {**super().env, "TMS_PC": "cps"}
 
-    def row(self, process: str) -> tuple[str, int]:
+    def start_east(self) -> None:
+        other = {**self.env, "TMS_PC": "east", "TMS_STATE": str(self.state.with_name("east"))}
         with pytest.MonkeyPatch.context() as patch:
-            for key, value in self.env.items():
+            for key, value in other.items():
                 patch.setenv(key, value)
-            row = find(load_site(), process)
-        return row.address, row.port
+            site = load_site()
+            own, row = {**other, **environment.environment(site)}, find(site, EAST)
+        self.east.append(programs.process(EAST, own, self.state.with_name("east.log")))
+        wait_until(lambda: unready(row) is None, 30, lambda: self.state.with_name("east.log").read_text())
 
-    def runs(self, process: str) -> float:
-        """Runs that a scheduler has ended."""
-        address, port = self.row(process)
-        with urllib.request.urlopen(f"http://{address}:{port}/metrics", timeout=5) as answer:
-            lines = answer.read().decode().splitlines()
-        return sum(float(line.split()[-1]) for line in lines if line.startswith("tms_ts_runs_total"))
+    def kill_east(self) -> None:
+        self.east[-1].kill()
+        self.east.pop().wait(10)
 
-    def pid(self, process: str) -> int:
-        rows = json.loads(self.tms("ps", "--json").stdout)
-        return next(int(row["pid"]) for row in rows if row["name"] == process)
+    def begin(self, task: str) -> str:
+        return str(json.loads(self.tms("run", task, "--json").stdout)["run_id"])
 
-    def active(self) -> list[str]:
+    def state_of(self, run: str) -> str:
         rows = json.loads(self.tms("runs", "--json").stdout)
-        return [row["run_id"] for row in rows if row["state"] == "running"]
+        return next(str(row["state"]) for row in rows if row["run_id"] == run)
 
 
 @pytest.fixture(scope="module")
-def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Pc, Pc]]:
-    """The main PC, and the one with the second scheduler; tasks: 1 swings of zx200, 2 of east_zx200, 3 of both."""
+def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Cps]:
+    """Tasks: long swings of zx200, of east_zx200, and one move of both."""
     folder = tmp_path_factory.mktemp("two")
-    file = folder / "site.yaml"
     with claimed_domain() as domain:
-        data = site_data(domain, ports_of(domain), pcs=PCS, machines=MACHINES)
-        file.write_text(yaml.safe_dump(data))
-        cps, east = Pc(file, folder / "cps", "cps"), Pc(file, folder / "east", "east")
+        data = site_data(
+            domain, ports_of(domain), pcs=PCS, machines=MACHINES, services={"db": {}, "ts": {}, "host": {}}
+        )
+        (folder / "site.yaml").write_text(yaml.safe_dump(data))
+        made = Cps(folder / "site.yaml", folder / "cps")
         try:
-            cps.tms("up")
-            east.tms("up")
-            cps.arm()
-            _prepare(cps, folder)
-            yield cps, east
+            made.tms("up")
+            made.start_east()
+            made.arm()
+            _prepare(made, folder)
+            yield made
         finally:
-            east.tms("down", expect=None)
-            cps.tms("down", expect=None)
+            for one in made.east:
+                one.kill()
+                one.wait(10)
+            made.tms("down", expect=None)
 
 
-def _prepare(cps: Pc, folder: Path) -> None:
-    records = (DATA / "swings.yaml").read_text()
-    (folder / "east.yaml").write_text(records.replace("zx200", "east_zx200"))
-    cps.tms("param", "load", str(DATA / "swings.yaml"))
-    cps.tms("param", "load", str(folder / "east.yaml"))
-    swings = (DATA / "many_swings.xml").read_text()
-    (folder / "east.xml").write_text(swings.replace('"zx200"', '"east_zx200"'))
-    (folder / "both.xml").write_text(BOTH)
-    for path in (DATA / "many_swings.xml", folder / "east.xml", folder / "both.xml"):
-        cps.tms("task", "add", str(path))
+def _prepare(made: Cps, folder: Path) -> None:
+    records, swings = (DATA / "swings.yaml").read_text(), (DATA / "many_swings.xml").read_text()
+    (folder / "east.yaml").write_text(records.replace("model_name: zx200", "model_name: east_zx200"))
+    made.tms("param", "load", str(DATA / "swings.yaml"))
+    made.tms("param", "load", str(folder / "east.yaml"))
+    (folder / "east.xml").write_text(swings.replace('model_name="zx200"', 'model_name="east_zx200"'))
+    (folder / "both.xml").write_text(TREE.format(LEAF.format("zx200") + LEAF.format("east_zx200")))
+    for file in (DATA / "many_swings.xml", folder / "east.xml", folder / "both.xml"):
+        made.tms("task", "add", str(file))
 
 
-def begin(pc: Pc, task: int) -> str:
-    return str(json.loads(pc.tms("run", str(task), "--json").stdout)["run_id"])
+def test_each_runs_the_tasks_of_its_machines_at_once(site: Cps) -> None:
+    mine, theirs = site.begin(MINE), site.begin(THEIRS)
+    assert theirs.endswith("-east") and not mine.endswith("-east")
+    assert site.state_of(mine) == site.state_of(theirs) == "running"
+    assert "is in run" in site.tms("run", BOTH, expect=1).stderr
+    site.tms("cancel", theirs)
+    assert "is in run" in site.tms("run", BOTH, expect=1).stderr
+    site.tms("cancel", "last")
+    assert site.state_of(mine) == site.state_of(theirs) == "cancelled"
+    both = json.loads(site.tms("run", BOTH, "--wait", "--json").stdout)
+    assert both["outcome"] == "success" and not both["run_id"].endswith("-east")
 
 
-def test_each_runs_the_tasks_of_its_machines(site: tuple[Pc, Pc]) -> None:
-    cps, east = site
-    mine, theirs = begin(cps, 1), begin(cps, 2)
-    refused = cps.tms("run", "3", expect=1)
-    assert "is in run" in refused.stderr
-    for run in (theirs, mine):
-        assert "cancelled" in east.tms("cancel", run).stdout
-    assert (cps.runs("tms:ts"), east.runs("tms:ts_east")) == (2.0, 1.0)
+def test_a_machine_that_the_other_scheduler_has_is_not_to_be_had(site: Cps) -> None:
+    theirs = site.begin(THEIRS)
+    refused = site.tms("run", BOTH, expect=1).stderr
+    assert f"east_zx200 is in run {theirs} of {EAST}" in refused
+    site.tms("cancel", theirs)
+    wait_until(lambda: site.tms("run", BOTH, "--wait", expect=None).returncode == 0, 30, "it was given back", every=CLI)
 
 
-def test_a_task_of_both_is_the_main_ones_and_has_both_machines(site: tuple[Pc, Pc]) -> None:
-    cps, east = site
-    run = begin(east, 3)
-    assert "is in run" in cps.tms("run", "2", expect=1).stderr
-    cps.tms("cancel", run, expect=None)
+def test_without_its_scheduler_a_machine_is_the_main_ones_and_the_lost_run_is_resumed(site: Cps) -> None:
+    lost = site.begin(THEIRS)
+    site.kill_east()
+    wait_until(lambda: site.tms("rearm", "east_zx200", "--yes", expect=None).returncode == 0, 30, "stopped", every=CLI)
+    others: list[str] = []
 
+    def taken() -> bool:
+        done = site.tms("run", THEIRS, "--json", expect=None)
+        others.extend([json.loads(done.stdout)["run_id"]] if done.returncode == 0 else [])
+        return bool(others)
 
-def test_without_its_scheduler_a_machine_is_the_main_ones(site: tuple[Pc, Pc]) -> None:
-    cps, east = site
-    run = begin(cps, 2)
-    os.kill(east.pid("tms:ts_east"), signal.SIGSTOP)
-    east.tms("stop", "tms:ts_east")
-    cps.tms("rearm", "east_zx200", "--yes", expect=None)
-    again = begin(cps, 2)
-    assert again != run and again in cps.active()
-    east.tms("start", "tms:ts_east")
-    wait_until(lambda: "cancelled" in cps.tms("cancel", again, expect=None).stdout, 30, "the cancel", every=CLI)
-    assert "is interrupted" not in cps.tms("abandon", run).stderr
+    wait_until(taken, 40, "the main scheduler takes it, once the lease is over", every=CLI)
+    assert not others[0].endswith("-east")
+    site.start_east()
+    assert "is in run" in site.tms("resume", lost, "--yes", expect=1).stderr
+    site.tms("cancel", others[0])
+    wait_until(lambda: site.tms("resume", lost, "--yes", expect=None).returncode == 0, 30, "it is resumed", every=CLI)
+    site.tms("cancel", lost)

@@ -110,6 +110,8 @@ def test_a_site_of_one_pc_may_have_one_too(tmp_path: Path) -> None:
         ({"pcs": {"cps": PCS["cps"], "sim": PCS["sim"]}}, "pcs", NoPcFor("zx200:rc", "machine")),
         ({"pcs": {**PCS, "b": {"address": "10.9.0.4", "roles": ["cps"]}}}, "pcs",
          ManyPcsFor(("cps", "b"), "tms:store", "cps")),
+        ({"pcs": {**PCS, **{pc: {"address": "a", "roles": ["scheduler"], "machines": ["zx200"]} for pc in ("b", "c")}}},
+         "pcs", ManyPcsFor(("b", "c"), "tasks of zx200", "scheduler")),
         ({"pcs": {**PCS, "spare": {"address": "10.9.0.4"}}}, "pcs.spare", NoRole(ROLES)),
         ({"pcs": {**PCS, "machine": {"address": "a", "machines": ["zx9"]}}}, "pcs.machine.machines",
          NotUnderMachines("zx9", ("zx200", "ic120_1"))),

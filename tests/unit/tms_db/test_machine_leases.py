@@ -87,6 +87,14 @@ def test_while_the_store_is_away_leases_are_renewed_and_none_changes_hands(site:
     assert site.lease("tms:ts", "a", 5, "zx200").error_code == "", "what could not be written did not happen"
 
 
+def test_who_gives_back_what_it_has_not_renews_nothing(site: Site) -> None:
+    site.lease("tms:ts_e", "lost", 5, "zx200")
+    for _ in range(3):
+        site.now += LEASE / 2
+        site.lease("tms:ts", "refused", 6, "zx200", over=True)
+    assert site.lease("tms:ts", "next", 7, "zx200").error_code == ""
+
+
 def test_before_the_book_was_read_nobody_gets_a_machine(site: Site) -> None:
     site.connection.away = True
     answer = site.lease("tms:ts", "a", 5, "zx200")
