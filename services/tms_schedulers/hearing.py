@@ -5,21 +5,42 @@ from functools import partial
 
 from tms_msg_ts.msg import RunStates
 
+from tms_config.clock import monotonic
 from tms_config.config import Site
 from tms_ros.node import Ros
 from tms_schedulers.names import schedulers
 
+QUIET = 5.0  # s without a message of a scheduler, which tells its runs once a second: its list counts no more
+
+
+class Lists:
+    """What each scheduler told last."""
+
+    def __init__(self) -> None:
+        self._told: dict[str, tuple[RunStates, float]] = {}
+
+    def put(self, scheduler: str, message: RunStates) -> None:
+        self._told[scheduler] = message, monotonic()
+
+    def merged(self) -> RunStates:
+        """The lists of all that are there, as one message."""
+        now = monotonic()
+        lists = [message for message, at in self._told.values() if now - at < QUIET]
+        if len(lists) == 1:
+            return lists[0]
+        return RunStates(
+            runs=[run for one in lists for run in one.runs],
+            questions=[asked for one in lists for asked in one.questions],
+        )
+
 
 def hear_runs(ros: Ros, site: Site, heard: Callable[[RunStates], None]) -> None:
-    """Call `heard` on the executor thread with all active runs and open questions, whenever a scheduler tells its own.
-
-    Those of a scheduler that is away are as it told them last.
-    """
-    told: dict[str, RunStates] = {}
+    """Call `heard` on the executor thread with all active runs and open questions, as soon as they change."""
+    lists = Lists()
 
     def received(scheduler: str, message: RunStates) -> None:
-        told[scheduler] = message
-        heard(merged(list(told.values())))
+        lists.put(scheduler, message)
+        heard(lists.merged())
 
     for one in schedulers(site):
         ros.subscribe(RunStates, one.named("runs"), partial(received, one.process), latched=True)
@@ -27,21 +48,13 @@ def hear_runs(ros: Ros, site: Site, heard: Callable[[RunStates], None]) -> None:
 
 def sample_runs(ros: Ros, site: Site) -> Callable[[], RunStates | None]:
     """A function that returns what all schedulers told last; None if nobody has told anything since its last call."""
-    told: dict[str, RunStates] = {}
+    lists = Lists()
     new = {one.process: ros.sample(RunStates, one.named("runs")) for one in schedulers(site)}
 
     def take() -> RunStates | None:
         arrived = {process: messages[-1] for process, take_one in new.items() if (messages := take_one())}
-        told.update(arrived)
-        return merged(list(told.values())) if arrived else None
+        for process, message in arrived.items():
+            lists.put(process, message)
+        return lists.merged() if arrived else None
 
     return take
-
-
-def merged(told: list[RunStates]) -> RunStates:
-    """What several schedulers told, as one message."""
-    if len(told) == 1:
-        return told[0]
-    return RunStates(
-        runs=[run for one in told for run in one.runs], questions=[asked for one in told for asked in one.questions]
-    )
