@@ -87,8 +87,8 @@ def call(
     return answer
 
 
-def latched(node: "Ros", message_type: type[M], topic: str, seconds: float | None = None) -> M | None:
-    """The state on a latched topic of a module; None if none arrives within `seconds` (default: LATCHED_LIMIT)."""
+def latched(node: "Ros", message_type: type[M], topic: str) -> M | None:
+    """The state on a latched topic of a module; None if none arrives within LATCHED_LIMIT."""
     received: list[M] = []
     there = threading.Event()
 
@@ -97,16 +97,18 @@ def latched(node: "Ros", message_type: type[M], topic: str, seconds: float | Non
         there.set()
 
     node.subscribe(message_type, topic, receive, latched=True)
-    return received[-1] if there.wait(LATCHED_LIMIT if seconds is None else seconds) else None
+    return received[-1] if there.wait(LATCHED_LIMIT) else None
 
 
-def of_any(node: "Ros", service_type: ServiceType[Req, Reply], name: str, unknown: str, **fields: Any) -> Reply:
+def of_any(
+    node: "Ros", where: Site, service_type: ServiceType[Req, Reply], name: str, unknown: str, **fields: Any
+) -> Reply:
     """Call a service of the scheduler that knows what is asked; the others refuse with the code `unknown`.
 
     Raises:
         TmsError: as `call`.
     """
-    return asking.of_any(site(), lambda one: call(node, service_type, one.named(name), **fields), unknown)
+    return asking.of_any(where, lambda one: call(node, service_type, one.named(name), **fields), unknown)
 
 
 def runs(node: "Ros", seconds: float = LATCHED_LIMIT) -> "RunStates | None":
@@ -122,10 +124,10 @@ def runs(node: "Ros", seconds: float = LATCHED_LIMIT) -> "RunStates | None":
             heard.notify_all()
 
     hear_runs(node, site(), receive)
-    several = len(schedulers(site())) - 1
+    every = len(schedulers(site()))
     with heard:
-        if heard.wait_for(lambda: told, seconds) and several:
-            heard.wait_for(lambda: len(told) > several, OTHERS_LIMIT)
+        if heard.wait_for(lambda: told, seconds):
+            heard.wait_for(lambda: len(told) >= every, OTHERS_LIMIT)
         return told[-1] if told else None
 
 

@@ -7,12 +7,12 @@ import threading
 from collections.abc import Mapping
 from dataclasses import asdict
 
-from pymongo.errors import DuplicateKeyError
 from tms_msg_db.srv import LeaseMachines
 
 from tms_config.clock import monotonic
 from tms_db.connection import StoreConnection
-from tms_db.store import Db, errors
+from tms_db.store import Db
+from tms_db.whole_document import WholeDocument
 from tms_reason.errors import DbError, TmsError
 from tms_reason.wire import to_line
 from tms_runtime.app import App
@@ -20,14 +20,13 @@ from tms_schedulers.lease_book import LEASE, Lease, LeaseBook
 from tms_schedulers.reasons import LeasesUnread, LeasesUnreadable
 
 COLLECTION = "machine_lease"
-KEY = {"_id": "book"}  # key of the only document, written whole
 
 
 class MachineLeases:
     """The keeper of the site's leases."""
 
     def __init__(self, app: App, db: Db, connection: StoreConnection) -> None:
-        self._app, self._db, self._connection = app, db, connection
+        self._app, self._document, self._connection = app, WholeDocument(db, COLLECTION), connection
         self._lock = threading.Lock()
         self._book: LeaseBook | None = None  # until it was read
 
@@ -58,8 +57,8 @@ class MachineLeases:
         if self._book is None:
             if self._connection.unready() is not None:
                 raise DbError(LeasesUnread(), "STORE_DOWN")
-            with self._connection.use(), errors():
-                found = self._db[COLLECTION].find_one(KEY) or {"leases": {}}
+            with self._connection.use():
+                found = self._document.read() or {"leases": {}}
             try:
                 leases = {name: Lease(**one) for name, one in found["leases"].items()}
             except (KeyError, TypeError, AttributeError) as error:
@@ -68,9 +67,5 @@ class MachineLeases:
         return self._book
 
     def _write(self, leases: Mapping[str, Lease]) -> None:
-        document = {**KEY, "leases": {name: asdict(one) for name, one in leases.items()}}
-        with self._connection.use(), errors():
-            try:
-                self._db[COLLECTION].replace_one(KEY, document, upsert=True)
-            except DuplicateKeyError:  # it was made meanwhile
-                self._db[COLLECTION].replace_one(KEY, document)
+        with self._connection.use():
+            self._document.write({"leases": {name: asdict(one) for name, one in leases.items()}})

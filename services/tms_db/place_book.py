@@ -1,21 +1,19 @@
 """The book of shared places in the database: one document, written whole."""
 
-from pymongo.errors import DuplicateKeyError
-
 from tms_db.reasons import PlacesUnreadable
-from tms_db.store import Db, errors
+from tms_db.store import Db
+from tms_db.whole_document import WholeDocument
 from tms_places.claims import Book, of_document, to_document
 from tms_reason.errors import DbError
 
 COLLECTION = "place"
-KEY = {"_id": "book"}  # key of the only document
 
 
 class PlaceBook:
     """The collection `place`."""
 
     def __init__(self, db: Db) -> None:
-        self._db = db
+        self._document = WholeDocument(db, COLLECTION)
 
     def read(self) -> Book:
         """Who holds and who waits; an empty book where none was written.
@@ -23,8 +21,7 @@ class PlaceBook:
         Raises:
             DbError: the store is away, or the document is no book.
         """
-        with errors():
-            found = self._db[COLLECTION].find_one(KEY)
+        found = self._document.read()
         if found is None:
             return Book()
         try:
@@ -38,8 +35,4 @@ class PlaceBook:
         Raises:
             DbError: the store is away; the one before may still count.
         """
-        with errors():
-            try:
-                self._db[COLLECTION].replace_one(KEY, to_document(book), upsert=True)
-            except DuplicateKeyError:  # it was made meanwhile
-                self._db[COLLECTION].replace_one(KEY, to_document(book))
+        self._document.write(to_document(book))

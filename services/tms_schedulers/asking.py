@@ -7,7 +7,7 @@ from typing import TypeVar
 from tms_config.config import Site
 from tms_reason.errors import RosError, TmsError
 from tms_ros.reasons import NoServer
-from tms_schedulers.names import Scheduler, schedulers
+from tms_schedulers.names import Scheduler, own, schedulers
 from tms_schedulers.reasons import OtherScheduler
 
 T = TypeVar("T")
@@ -71,7 +71,7 @@ def of_its_own(site: Site, start: Callable[[Scheduler], T], unknown: str) -> T:
         except TmsError as error:
             why = error.reason
             if isinstance(why, OtherScheduler):
-                return start(next(one for one in every if one.process == why.scheduler))
+                return start(own(site, why.scheduler))
             if one == every[-1] or not (isinstance(why, NoServer) or error.code == unknown):
                 raise
     raise AssertionError

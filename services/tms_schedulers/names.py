@@ -43,7 +43,7 @@ def schedulers(site: Site) -> tuple[Scheduler, ...]:
 
 
 def own(site: Site, process: str) -> Scheduler:
-    """The scheduler that a process is."""
+    """The scheduler that a process is; `process` is one."""
     return next(one for one in schedulers(site) if one.process == process)
 
 

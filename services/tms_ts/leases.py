@@ -19,6 +19,7 @@ from tms_schedulers.names import own, responsible, schedulers
 from tms_schedulers.reasons import MachineLeased, OtherScheduler, RunOutdated
 from tms_ts.active_runs import ActiveRuns
 from tms_ts.facts import Facts
+from tms_ts.run import Run
 
 SERVICE = "/tms/db/lease_machines"
 LIMIT = 5.0  # s
@@ -33,10 +34,10 @@ class Leases:
     def __init__(self, app: App, runs: ActiveRuns) -> None:
         self._app, self._runs = app, runs
         self.scheduler = own(app.site, app.process.full)
-        self._several = len(schedulers(app.site)) > 1
+        self.several = len(schedulers(app.site)) > 1  # of the site
         self._ended: deque[tuple[LeaseMachines.Request, float]] = deque(maxlen=WAITING)
         self._renewed = monotonic()
-        if self._several:
+        if self.several:
             app.ros.prepare(LeaseMachines, SERVICE)
             app.ros.poll_in_thread(LOOK, self._look, "leases")
 
@@ -51,20 +52,13 @@ class Leases:
         if whose != self.scheduler and self._app.ros.has_service(CancelRun, whose.named("cancel_run")):
             raise TaskError(OtherScheduler(whose.process, tuple(wanted)))
 
-    @property
-    def several(self) -> bool:
-        """Whether the site has more than one scheduler."""
-        return self._several
-
     def last(self) -> int:
         """A number that those of new runs must be above.
 
         Raises:
             RosError: the database does not answer.
         """
-        if not self._several:
-            return 0
-        return int(ask(self._app.ros, LeaseMachines, SERVICE, LeaseMachines.Request(), LIMIT).last)
+        return int(self._ask(LeaseMachines.Request()).last) if self.several else 0
 
     def take(self, facts: Facts) -> None:
         """Have the machines of a run for it alone, on the whole site.
@@ -72,12 +66,12 @@ class Leases:
         Raises:
             RosError: another scheduler's run has one of them, or the database does not answer.
         """
-        if self._several:
-            ask(self._app.ros, LeaseMachines, SERVICE, self._request(facts, facts.machines), LIMIT)
+        if self.several:
+            self._ask(self._request(facts, facts.machines))
 
     def give_back(self, facts: Facts) -> None:
         """A run has ended; returns at once."""
-        if self._several and facts.machines:
+        if self.several and facts.machines:
             request = self._request(facts, facts.machines)
             request.over = True
             self._ended.append((request, monotonic() + LEASE))
@@ -86,6 +80,9 @@ class Leases:
         return LeaseMachines.Request(
             scheduler=self.scheduler.process, run_id=facts.run_id, number=facts.number, machines=list(machines)
         )
+
+    def _ask(self, request: LeaseMachines.Request) -> LeaseMachines.Response:
+        return ask(self._app.ros, LeaseMachines, SERVICE, request, LIMIT)
 
     def _look(self) -> None:
         while self._ended:
@@ -96,16 +93,18 @@ class Leases:
         if monotonic() - self._renewed >= RENEW:
             self._renewed = monotonic()
             for run in self._runs:
-                machines = self._runs.held_by(run)
-                try:
-                    ask(self._app.ros, LeaseMachines, SERVICE, self._request(run.facts, machines), LIMIT)
-                except RosError as error:
-                    if error.code in (MachineLeased.code, RunOutdated.code):
-                        run.cancel("cancelled", error.reason)
+                self._renew(run)
 
     def _told(self, request: LeaseMachines.Request) -> bool:
         try:
-            ask(self._app.ros, LeaseMachines, SERVICE, request, LIMIT)
+            self._ask(request)
         except RosError:
             return False
         return True
+
+    def _renew(self, run: Run) -> None:
+        try:
+            self._ask(self._request(run.facts, self._runs.held_by(run)))
+        except RosError as error:
+            if error.code in (MachineLeased.code, RunOutdated.code):
+                run.cancel("cancelled", error.reason)

@@ -4,12 +4,15 @@ import os
 import socket
 import subprocess
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
 
 from tms_config.config import PROJECT
 from tms_db import store
+from tms_reason.reason import Reason
 
 PROGRAM = PROJECT / ".venv-store" / "bin" / "secantusd-py"
 PREFIX = "tms_test_"  # of the databases that tests make in a MongoDB, and drop
@@ -77,3 +80,18 @@ class MongoDb:
         again = store.connect(self.uri, db.name)
         again.client.drop_database(db.name)
         again.client.close()
+
+
+class Connection:
+    """A connection as a keeper sees it, to a store that may be away."""
+
+    away = False
+
+    def unready(self) -> Reason | None:
+        return store.down().reason if self.away else None
+
+    @contextmanager
+    def use(self) -> Iterator[None]:
+        if self.away:
+            raise store.down()
+        yield

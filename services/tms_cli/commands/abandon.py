@@ -21,7 +21,7 @@ def command(run: str, as_json: bool) -> None:
     from tms_msg_ts.srv import CancelRun
 
     with session.ros() as node:
-        session.of_any(node, CancelRun, "abandon_run", "NO_RUN", run_id=run)
+        session.of_any(node, session.site(), CancelRun, "abandon_run", "NO_RUN", run_id=run)
     if as_json:
         session.show_json({"run_id": run, "state": "abandoned"})
     else:

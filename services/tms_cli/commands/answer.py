@@ -38,7 +38,7 @@ def command(reply: str | None, question: str | None, as_json: bool) -> None:
             one = _only(asked, question)
             by = f"{getpass.getuser()} at {socket.gethostname()}"
             answer = {"id": one.id, "yes": reply == "yes", "by": by}
-            session.of_any(node, AnswerQuestion, "answer", "NO_QUESTION", **answer)
+            session.of_any(node, session.site(), AnswerQuestion, "answer", "NO_QUESTION", **answer)
     if as_json:
         session.show_json([_as_dict(one) for one in asked])
     elif reply is not None:

@@ -77,7 +77,7 @@ def command(ctx: click.Context, run: str, as_json: bool) -> None:
 
     with session.ros() as node:
         run_id = _which(node, run)
-        session.of_any(node, CancelRun, "cancel_run", "NO_RUN", run_id=run_id)
+        session.of_any(node, session.site(), CancelRun, "cancel_run", "NO_RUN", run_id=run_id)
         click.echo(say("run {run} is being cancelled", run=run_id), err=True)
         ended = _wait(node, run_id)
     if as_json:

@@ -18,7 +18,7 @@ from tms_reason.errors import TmsError
 from tms_reason.reason import Reason
 from tms_runtime.reasons import NotStored
 from tms_schedulers import asking
-from tms_schedulers.names import Scheduler, schedulers
+from tms_schedulers.names import Scheduler, own
 from tms_schedulers.reasons import OtherScheduler
 
 if TYPE_CHECKING:
@@ -128,7 +128,8 @@ class Runner:
             self._peer.cancel(self._call)
             return
         try:
-            session.of_any(self._node, CancelRun, "cancel_run", "NO_RUN", run_id=self.view.run_id)
+            where = session.site()
+            session.of_any(self._node, where, CancelRun, "cancel_run", "NO_RUN", run_id=self.view.run_id)
         except TmsError as error:
             click.echo(
                 say("tms: the cancel did not get through: {error}; trying the action itself", error=error), err=True
@@ -164,7 +165,7 @@ class Runner:
         result = self._call.result
         why = None if result is None or result.outcome != "refused" else wire.of(result.error_msg)
         if isinstance(why, OtherScheduler):
-            self._send(next(one for one in schedulers(session.site()) if one.process == why.scheduler))
+            self._send(own(session.site(), why.scheduler))
         return self._call.outcome is not None or self._reported is not None
 
     def _in_history(self) -> "Run | None":

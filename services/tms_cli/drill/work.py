@@ -22,8 +22,7 @@ from tms_reason import wire
 from tms_reason.errors import TmsError
 from tms_ros.client import Call
 from tms_ros.node import Ros
-from tms_schedulers import asking
-from tms_schedulers.names import Scheduler, responsible
+from tms_schedulers.names import responsible
 from tms_ts.reasons import StateBecause
 
 ARM_LIMIT = 30.0  # s for the machine to be armed again
@@ -118,11 +117,8 @@ class Work:
                 raise TmsError(RunDoesNotEnd(str(self._run)))
             sleep(CHECK_PERIOD)
         if self._recorded() == INTERRUPTED:
-            asking.of_any(self._site, self._abandon, "NO_RUN")
+            session.of_any(self._node, self._site, CancelRun, "abandon_run", "NO_RUN", run_id=self._run)
         self._call = None
-
-    def _abandon(self, scheduler: Scheduler) -> None:
-        session.call(self._node, CancelRun, scheduler.named("abandon_run"), run_id=self._run)
 
     def _recorded(self) -> str:
         """The end of the run in the history, maybe before the loss of its scheduler; empty: not ended, or unknown."""

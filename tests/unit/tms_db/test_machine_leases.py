@@ -1,6 +1,5 @@
 """The keeper of leases: in the database before an answer, kept over a restart, and renewed while the store is away."""
 
-from contextlib import contextmanager
 from types import SimpleNamespace
 from typing import Any
 
@@ -9,26 +8,12 @@ import pytest
 import structlog
 from tms_msg_db.srv import LeaseMachines
 
-from tms_db import machine_leases, store
+from stores import Connection
+from tms_db import machine_leases
 from tms_db.machine_leases import COLLECTION, MachineLeases
 from tms_reason import wire
 from tms_schedulers.lease_book import LEASE
 from tms_schedulers.reasons import LeasesUnread, LeasesUnreadable, MachineLeased
-
-
-class Connection:
-    """The store, which may be away."""
-
-    away = False
-
-    def unready(self) -> Any:
-        return store.down().reason if self.away else None
-
-    @contextmanager
-    def use(self) -> Any:
-        if self.away:
-            raise store.down()
-        yield
 
 
 class Site:

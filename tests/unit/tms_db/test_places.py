@@ -1,6 +1,5 @@
 """The keeper's process: what it grants is in the database first, and what cannot be written does not happen."""
 
-from contextlib import contextmanager
 from types import SimpleNamespace
 from typing import Any
 
@@ -9,28 +8,13 @@ import pytest
 from tms_msg_areas.msg import Place
 from tms_msg_areas.srv import AskPlaces, ReportPlaces, RevokePlace
 
-from tms_db import store
+from stores import Connection
 from tms_db.place_book import PlaceBook
 from tms_db.places import PlaceServices
 from tms_places.claims import Book, Claim
 from tms_places.keeper import LEASE
 from tms_reason import wire
 from tms_reason.errors import DbError
-
-
-class Connection:
-    """The store, which may be away."""
-
-    away = False
-
-    def unready(self) -> Any:
-        return store.down().reason if self.away else None
-
-    @contextmanager
-    def use(self) -> Any:
-        if self.away:
-            raise store.down()
-        yield
 
 
 class Site:

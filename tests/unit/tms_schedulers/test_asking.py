@@ -8,7 +8,7 @@ import pytest
 from tms_reason.errors import RosError, TmsError
 from tms_reason.reason import Foreign
 from tms_ros.reasons import NoServer
-from tms_schedulers import asking
+from tms_schedulers import asking, names
 from tms_schedulers.names import Scheduler
 from tms_schedulers.reasons import OtherScheduler
 
@@ -21,7 +21,8 @@ SITE: Any = None
 
 @pytest.fixture(autouse=True)
 def two(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(asking, "schedulers", lambda _: (MAIN, EAST))
+    for module in (asking, names):
+        monkeypatch.setattr(module, "schedulers", lambda _: (MAIN, EAST))
 
 
 def said(**answers: Any) -> Any:
