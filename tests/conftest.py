@@ -21,6 +21,7 @@ import examples
 import programs
 import sharing
 import turns
+from tms_runtime import environment
 
 if TYPE_CHECKING:
     from tms_ros.node import Ros
@@ -35,6 +36,12 @@ WARNINGS = 40  # lines shown of a failed test's mesh
 examples.register()
 
 
+def on_loopback() -> None:
+    """DDS of this process as a mesh on one PC has it. Fast DDS reads its profile once, for the first node of a process:
+    a test that made one without it left all later tests of its process with other transports and heartbeats."""
+    os.environ.update(environment.ON_LOOPBACK)
+
+
 def pytest_addoption(parser: pytest.Parser) -> None:
     turns.add_option(parser)
 
@@ -42,6 +49,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 def pytest_configure(config: pytest.Config) -> None:
     """Which turn it is; log lines as `event=name key=value`, through the standard library, where pytest hears them."""
     turns.settle(config)
+    on_loopback()
     structlog.configure(
         processors=[structlog.contextvars.merge_contextvars, structlog.processors.LogfmtRenderer(key_order=["event"])],
         logger_factory=structlog.stdlib.LoggerFactory(),
@@ -195,7 +203,6 @@ def running(mesh: Mesh, armed: bool = True) -> Iterator[Mesh]:
 def mesh_apart(folder: Path, **changes: object) -> Iterator[Mesh]:
     """A mesh in a domain of its own, not up yet, whose site and environment are those of this process meanwhile."""
     from tms_config.config import load_site
-    from tms_runtime import environment
 
     with claimed_domain() as domain, pytest.MonkeyPatch.context() as patch:
         site = folder / "site.yaml"
@@ -281,7 +288,6 @@ def node_in(mesh: Mesh) -> Iterator["Ros"]:
     """A ROS node in the domain of a mesh."""
     from tms_config.config import load_site
     from tms_ros.node import Ros
-    from tms_runtime import environment
 
     old = dict(os.environ)
     os.environ.update(mesh.env)

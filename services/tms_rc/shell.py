@@ -16,7 +16,7 @@ from tms_decision.gateway.state import Gateway
 from tms_decision.gateway.step import step
 from tms_runtime.app import App
 
-PROOF_PERIOD = 0.01  # s between beats while a stop is being proven
+PROOF_PERIOD = 0.05  # s between beats while a stop is being proven; states of machines come 10 to 50 times a second
 
 E = TypeVar("E")
 T = TypeVar("T")

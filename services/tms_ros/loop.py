@@ -8,7 +8,7 @@ Why it is built this way (all measured with the rclpy in use):
 
 import threading
 from collections.abc import Awaitable, Callable
-from contextlib import AbstractContextManager, nullcontext
+from contextlib import AbstractContextManager, nullcontext, suppress
 from typing import Any
 
 import rclpy
@@ -19,6 +19,7 @@ from rclpy.clock_type import ClockType
 from rclpy.context import Context
 from rclpy.exceptions import InvalidHandle
 from rclpy.node import Node
+from rclpy.parameter import Parameter
 from rclpy.signals import SignalHandlerOptions
 from rclpy.task import Future
 
@@ -45,8 +46,13 @@ class EventLoop:
         self._context = Context()
         rclpy.init(context=self._context, signal_handler_options=SignalHandlerOptions.NO)
         with creating or nullcontext():
-            self.node: Node = rclpy.create_node(
-                name, namespace=namespace, context=self._context, start_parameter_services=False, enable_rosout=False
+            self.node: Node = rclpy.create_node(  # no service that nobody uses: every process discovers each one
+                name,
+                namespace=namespace,
+                context=self._context,
+                start_parameter_services=False,
+                enable_rosout=False,
+                parameter_overrides=[Parameter("start_type_description_service", value=False)],
             )
         self.group = ReentrantCallbackGroup()
         self._steady = Clock(clock_type=ClockType.STEADY_TIME)  # a node's own clock stands still when NTP sets it back
@@ -149,12 +155,10 @@ class EventLoop:
         """Call `step` at a fixed rate in a thread of its own, if it only samples: this costs a tenth of a timer."""
 
         def sample() -> None:
-            while not self.closing:
-                try:
+            with suppress(InvalidHandle):  # the node was destroyed
+                while not self.closing:
                     step()
-                except InvalidHandle:  # the node was destroyed
-                    return
-                sleep(seconds)
+                    sleep(seconds)
 
         self.begin(sample, name)
 

@@ -10,6 +10,11 @@ from tms_runtime import addresses, state_folder
 # UDP on one interface only, no shared memory: the LOCALHOST range of Fast DDS silently loses
 # everything above 32 participants, and shared memory leaks with every killed process.
 PROFILE = PROJECT / "deploy" / "dds" / "loopback.xml"
+ON_LOOPBACK = {
+    "ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET",
+    "FASTRTPS_DEFAULT_PROFILES_FILE": str(PROFILE),
+    "RMW_FASTRTPS_USE_QOS_FROM_XML": "1",  # heartbeats: see the profile
+}
 LOOPBACK = "<address>127.0.0.1</address>"
 
 
@@ -25,11 +30,10 @@ def environment(site: Site) -> dict[str, str]:
     return {
         **discovery,
         **({"TMS_PC": site.pc} if site.pc else {}),
+        **ON_LOOPBACK,
         "ROS_DOMAIN_ID": str(site.domain),
         "ROS_LOG_DIR": str(site.state / "ros"),
-        "ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET",
         "FASTRTPS_DEFAULT_PROFILES_FILE": str(_profile(site)),
-        "RMW_FASTRTPS_USE_QOS_FROM_XML": "1",  # heartbeats: see the profile
         "TMS_SITE": str(site.path),
         "TMS_STATE": str(site.state),
         "OPENBLAS_NUM_THREADS": "1",  # rclpy loads numpy, whose threads are of no use here

@@ -40,7 +40,7 @@ LeafCall = Call[LeafNodeBase.Result, LeafNodeBase.Feedback]
 
 HANDOVER = Histogram(
     "tms_ts_handover_seconds", "From the result of one leaf of a run to the acceptance of the next goal",
-    buckets=(0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.5, 1, 5),
+    buckets=(0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.25, 0.5, 1, 5),
 )  # fmt: skip
 
 

@@ -6,6 +6,7 @@ from tms_decision.gateway.stops import RECEIPT_LIMIT
 from tms_reason import wire
 from tms_reason.errors import RosError
 from tms_reason.reason import Reason
+from tms_runtime.priority import URGENT, undisturbed
 from tms_ur import gateway_areas, messages
 from tms_ur.answers import checked
 from tms_ur.models import Rearmed, Receipt
@@ -20,7 +21,8 @@ class MachineCalls(RunCalls):
         """Stop one machine by a call of its gateway; where no answer comes, the receipt says that."""
         try:
             request = StopMachine.Request(cause=wire.to_line(cause))
-            answer = self._ros.call(StopMachine, f"/{machine}/rc/stop", request, RECEIPT_LIMIT)
+            with undisturbed(URGENT):
+                answer = self._ros.call(StopMachine, f"/{machine}/rc/stop", request, RECEIPT_LIMIT)
         except RosError as error:
             return Receipt(
                 machine=machine, confirmed=False, seconds=0.0, travel_joint="", travel_rad=0.0, travel_m=0.0,

@@ -35,7 +35,7 @@ def measure() -> Iterable[Figure]:
         period, overruns = _ticks(own, RUNS)
         assert set(started) == _running(own), "a run has ended"
     yield Figure("tick period, 10", "ms", period, 1.05 * PERIOD, alone, usual_floor=PERIOD)
-    yield Figure("late ticks, 10", "%", 100 * overruns, 1.0, 1.0)
+    yield Figure("late ticks, 10", "%", 100 * overruns, 1.0)
 
 
 def _stored(own: Rig, number: int) -> str:

@@ -33,7 +33,7 @@ def measure() -> Iterable[Figure]:
         finally:
             mesh.tms("down")
     yield Figure("publish to read", "ms", found["p99"], 50.0, found["hop"], usual_floor=5.0)
-    yield Figure("lost", "", found["lost"], 0.5, 1.0)
+    yield Figure("lost", "", found["lost"], 0.5)
 
 
 def prepared(folder: Path, domain: int) -> Mesh:

@@ -63,7 +63,7 @@ def _stops(stack: ExitStack, site: object, process: Callable[..., object], burn:
         stack.enter_context(process(*command))
     presses = [late for _ in range(PRESSES) for late in _press(yard)]
     floor = _relayed(yard)
-    yield Figure("press p99", "ms", _p99(presses), 50.0, _p99(floor), usual_floor=20.0)
+    yield Figure("press p99", "ms", _p99(presses), 30.0, _p99(floor), usual_floor=20.0)
     yield Figure("spin p99", "ms", _p99([_spin() for _ in range(SPINS)]), 100.0, _p99([_wake() for _ in range(SPINS)]))
     kills = [late for number in range(KILLS) for late in _kill(yard, number + 1, process)]
     yield Figure("kill max", "ms", max(kills), 700.0, LEASE * 1000)

@@ -25,12 +25,30 @@ def made_up(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(runner, "groups", lambda: ["made_up"])
 
 
-def test_a_limit_grows_only_with_a_slower_pc() -> None:
-    assert Figure("f", "ms", 1.9, 1.0, floor=2.0, usual_floor=1.0).held
-    assert not Figure("f", "ms", 2.1, 1.0, floor=2.0, usual_floor=1.0).held
-    assert Figure("f", "ms", 1.0, 1.0, floor=0.1, usual_floor=1.0).held
-    assert not Figure("f", "B", 1.1, 1.0, floor=2.0).held
+@pytest.mark.parametrize(
+    ("figure", "verdict"),
+    [
+        (Figure("as slow as the PC", "ms", 1.9, 1.0, floor=2.0, usual_floor=1.0), "held"),
+        (Figure("slower than the PC", "ms", 2.1, 1.0, floor=2.0, usual_floor=1.0), "SHORT"),
+        (Figure("a faster PC", "ms", 1.0, 1.0, floor=0.1, usual_floor=1.0), "held"),
+        (Figure("over it", "B", 1.1, 1.0, floor=0.5), "SHORT"),
+        (Figure("the floor misses it as well", "B", 2.1, 1.0, floor=2.0), "floor"),
+        (Figure("below its floor", "B", 0.9, 1.0, floor=2.0), "held"),
+        (Figure("counted", "", 1.0, 0.5), "SHORT"),
+    ],
+)
+def test_verdicts(figure: Figure, verdict: str) -> None:
+    assert figure.verdict == verdict
+
+
+def test_ratios() -> None:
     assert Figure("f", "B", 3.0, 1.0, floor=2.0).ratio == 1.5
+    assert Figure("counted", "", 1.0, 0.5).ratio is None
+
+
+def test_figures_at_the_floor_are_counted_apart() -> None:
+    assert runner.last_line(["held", "floor", "held"], []) == "2 held, 0 short, 1 at the floor"
+    assert runner.last_line(["held", "SHORT"], ["db"]) == "1 held, 1 short; broke off: db"
 
 
 def test_a_group_is_a_file() -> None:
@@ -52,7 +70,7 @@ def test_table_last_line_and_history(made_up: None, tmp_path: Path, capsys: pyte
     assert first["seconds"] == {"made_up": 0.0}
     assert first["figures"][1] == {
         "group": "made_up", "name": "slow", "unit": "ms", "value": 1234.0, "floor": 0.5, "ratio": 2468.0, "limit": 2.0,
-        "allowed": 2.0, "held": False, "note": "the third",
+        "allowed": 2.0, "verdict": "SHORT", "note": "the third",
     }  # fmt: skip
 
 

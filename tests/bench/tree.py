@@ -26,8 +26,8 @@ def measure() -> Iterable[Figure]:
     assert tree.tick() is Status.RUNNING
     plain.tick_once()
     build, plain_tick = milliseconds(plain_py_trees, 15), milliseconds(plain.tick_once, 50)
-    yield Figure("load", "ms", milliseconds(lambda: load(text, world=world), 15), 50.0, build, usual_floor=4.8)
-    yield Figure("idle tick", "ms", milliseconds(tree.tick, 200), 1.0, plain_tick, usual_floor=0.69)
+    yield Figure("load", "ms", milliseconds(lambda: load(text, world=world), 15), 20.0, build, usual_floor=4.8)
+    yield Figure("idle tick", "ms", milliseconds(tree.tick, 200), 0.1, plain_tick, usual_floor=0.69)
     count = len(tree.nodes)
     weight, plain_weight = weight_of(lambda: load(text, world=world)), weight_of(plain_py_trees)
     yield Figure("memory a node", "B", weight / count, 3072.0, plain_weight / count)

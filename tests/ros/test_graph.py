@@ -6,6 +6,7 @@ import pytest
 import structlog
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from std_msgs.msg import Bool, String
+from std_srvs.srv import Trigger
 
 from conftest import wait_until
 from tms_if.on_executor import do
@@ -33,6 +34,16 @@ class Watched:
 @pytest.fixture
 def watched(two_nodes: tuple[Ros, Ros], caplog: pytest.LogCaptureFixture) -> Watched:
     return Watched(two_nodes[0], caplog)
+
+
+def test_a_process_offers_no_service_that_nobody_uses(two_nodes: tuple[Ros, Ros]) -> None:
+    """Each one is discovered by every other process: with fifty of them, that is most of what a start costs."""
+    here, other = two_nodes
+    wait_until(lambda: ("server", "/") in other.node.get_node_names_and_namespaces(), LIMIT, "they know each other")
+    here.offer(Trigger, "/wanted", lambda _, response: response)
+    services = lambda: [name for name, _ in other.node.get_service_names_and_types_by_node("server", "/")]  # noqa: E731
+    wait_until(lambda: "/wanted" in services(), LIMIT, "seen")
+    assert services() == ["/wanted"]
 
 
 def test_a_publisher_that_nobody_can_hear_is_told_once(two_nodes: tuple[Ros, Ros], watched: Watched) -> None:

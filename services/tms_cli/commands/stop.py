@@ -11,6 +11,7 @@ from tms_config.reasons import NoMachine
 from tms_decision.reasons import SoftwareStop
 from tms_reason.errors import ConfigError, RosError
 from tms_reason.wire import to_line
+from tms_runtime.priority import URGENT, undisturbed
 
 if TYPE_CHECKING:
     from tms_msg_rc.msg import StopReceipt
@@ -28,7 +29,8 @@ def stop(node: "Ros", machine: str) -> "StopReceipt":
 
     try:
         request = StopMachine.Request(cause=CAUSE)
-        return node.call(StopMachine, f"/{machine}/rc/stop", request, ANSWER_LIMIT).receipt
+        with undisturbed(URGENT):
+            return node.call(StopMachine, f"/{machine}/rc/stop", request, ANSWER_LIMIT).receipt
     except RosError as error:
         return StopReceipt(machine=machine, confirmed=False, cause=CAUSE, detail=to_line(error.reason))
 

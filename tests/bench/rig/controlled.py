@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import tempfile
 import time
 from array import array
@@ -16,11 +15,10 @@ from builtin_interfaces.msg import Duration
 from control_msgs.action import FollowJointTrajectory
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
-from conftest import rearm
-from operasim_rig import LIMIT, OperaSim
+from conftest import claimed_domain, ports_of, rearm
+from operasim_rig import LIMIT, OperaSim, operasim
 
 MACHINE = "zx200"
-DOMAIN, PORT = 98, 19300
 MEASURED = 10.0  # s
 JOINTS = ["swing_joint", "boom_joint", "arm_joint", "bucket_joint", "bucket_end_joint"]
 
@@ -39,15 +37,11 @@ def costs() -> tuple[float, float, float]:
 
 @contextmanager
 def _site(folder: Path) -> Iterator[OperaSim]:
-    os.environ.update(ROS_DOMAIN_ID=str(DOMAIN), TMS_STATE=str(folder / "state"))
-    site = OperaSim(folder, DOMAIN, PORT, MACHINE, "zx200")
-    try:
+    with claimed_domain() as domain, operasim(folder, domain, ports_of(domain), MACHINE, "zx200") as site:
         site.until(site.stands, "it stands")
         site.run(f"{MACHINE}:rc", f"{MACHINE}:mc")
         site.until(lambda: rearm(site.ros, MACHINE), "it is armed")
         yield site
-    finally:
-        site.close()
 
 
 def _swing(site: OperaSim) -> Any:

@@ -32,6 +32,7 @@ from tms_ros.goals import Ended, Outcome
 from tms_ros.node import Ros
 from tms_ros.server import Goal
 from tms_runtime import environment
+from tms_runtime.priority import URGENT, undisturbed
 
 COUNT = 20
 MODEL = "zx200"
@@ -187,8 +188,9 @@ class Yard:
 
     def press(self) -> list[float]:
         """The software stop; ms from the press to each gateway's zero velocities."""
-        begun = time.time_ns()
-        self._button.publish(Bool(data=True))
+        with undisturbed(URGENT):  # as the console and `tms stop` send it
+            begun = time.time_ns()
+            self._button.publish(Bool(data=True))
         return self.stopped_since(begun)
 
     def stopped_since(self, begun: int) -> list[float]:
