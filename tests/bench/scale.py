@@ -168,7 +168,7 @@ def _tree(machines: list[str]) -> str:
 
 
 def _watched(own: Rig, pid: int) -> tuple[float, float, float, float]:
-    """Of the scheduler while runs go on: late ticks [%], mean hand-over [ms], slow ones [%], processor time [% core]."""
+    """Of the scheduler, in a while: late ticks [%], mean hand-over [ms], slow ones [%], processor time [% core]."""
 
     def used() -> float:
         return sum(psutil.Process(pid).cpu_times()[:2])
