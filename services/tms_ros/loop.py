@@ -47,13 +47,9 @@ class EventLoop:
         rclpy.init(context=self._context, signal_handler_options=SignalHandlerOptions.NO)
         with creating or nullcontext():
             self.node: Node = rclpy.create_node(  # no service that nobody uses: every process discovers each one
-                name,
-                namespace=namespace,
-                context=self._context,
-                start_parameter_services=False,
-                enable_rosout=False,
+                name, namespace=namespace, context=self._context, start_parameter_services=False, enable_rosout=False,
                 parameter_overrides=[Parameter("start_type_description_service", value=False)],
-            )
+            )  # fmt: skip
         self.group = ReentrantCallbackGroup()
         self._steady = Clock(clock_type=ClockType.STEADY_TIME)  # a node's own clock stands still when NTP sets it back
         self._executor = KeepingExecutor(self._context)

@@ -19,7 +19,7 @@ class Left(Data):
 
 
 class Beat(Event):
-    """A moment has passed: 50 ms, or 10 ms while a stop is being proven. What the shell sees at it."""
+    """A moment has passed: 50 ms, or less while a stop is being proven. What the shell sees at it."""
 
     wall: float  # s since 1970, for receipts
     reachable: bool = True  # a cancel would reach all servers of the machine
