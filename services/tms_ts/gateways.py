@@ -8,7 +8,6 @@ from tms_msg_rc.msg import MachineState, StopReceipt
 from tms_msg_rc.srv import StopMachine
 
 from tms_config.clock import monotonic, sleep
-from tms_decision.duty import NOTED
 from tms_decision.owner import Owner
 from tms_decision.permit_link import NOBODY
 from tms_decision.reasons import DrivenByHand, MachineLatched, ProcessAway, SoftwareStop
@@ -20,6 +19,7 @@ from tms_reason.reason import Reason
 from tms_runtime.app import App
 from tms_runtime.fence import goal_id
 from tms_schedulers.names import schedulers
+from tms_ts.missed_presses import MissedPresses
 from tms_ts.reasons import MachineNotReady
 from tms_ts.run_permit import RunPermit
 
@@ -56,9 +56,7 @@ class Gateways:
         self._controls: dict[str, Controls] = {}
         self._permits: dict[str, RunPermit] = {}
         self._holders: dict[str, Holder] = {}
-        self._pressed: frozenset[str] = frozenset()  # machines whose latch was not shown since the button was pressed
-        self._pressed_at = float("-inf")
-        self._shown: frozenset[str] = frozenset()  # machines whose present gateway shows a latch
+        self.missed_presses = MissedPresses(app.site.file.machines)
         for machine in app.site.file.machines:
             self._attend(machine)
         app.ros.subscribe(Bool, "/emergency_signal", self._signal, depth=SIGNALS)
@@ -144,17 +142,9 @@ class Gateways:
         state = self._states.get(machine)
         return wire.of(state.latch) if state is not None else None
 
-    def missed_press(self, machine: str) -> bool:
-        """Whether its gateway has shown no latch since the stop button was pressed: it may have died of that moment."""
-        return machine in self._pressed
-
     def _state(self, machine: str, state: MachineState) -> None:
         self._states[machine] = state
-        if state.latch:
-            self._pressed -= {machine}
-            self._shown |= {machine}
-        else:
-            self._shown -= {machine}
+        self.missed_presses.shows(machine, bool(state.latch))
         holder = self._holders.get(machine)
         if holder is not None and state.latch:
             holder.stopped(machine, wire.known(state.latch))
@@ -168,20 +158,18 @@ class Gateways:
 
     def _signal(self, message: Bool) -> None:
         if message.data:
-            # A machine that shows a latch has it already; once somebody has re-armed it, the press is over.
-            self._pressed |= self._gateways.keys() - self._shown
-            self._pressed_at = monotonic()
+            self.missed_presses.pressed(monotonic())
             for machine, holder in list(self._holders.items()):
                 holder.stopped(machine, SoftwareStop())
 
     def _gateway_changed(self, machine: str, gateway: RemotePermit) -> None:
         """Stop the machine of a lost gateway at once, as the gateway would; its successor does the same, but later."""
-        if not gateway.alive:
-            self._shown -= {machine}
-        if gateway.alive or gateway.goal == NOBODY:
+        if gateway.alive:
             return
-        if monotonic() - self._pressed_at < NOTED:  # the latch that it may have shown may not be on its disk
-            self._pressed |= {machine}
+        if gateway.goal == NOBODY:
+            self.missed_presses.left(machine)
+            return
+        self.missed_presses.lost(machine, monotonic())
         self._controls[machine].zero()
         self._controls[machine].cancel_everything()
         self._app.log.warning("gateway_lost", machine=machine, action="cancelled its goals")

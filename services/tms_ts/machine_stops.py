@@ -38,7 +38,7 @@ class MachineStops:
         line, deadline = to_line(cause), monotonic() + RECEIPT_LIMIT
         while True:
             self._gateways.wait_alive(machine, GATEWAY_LIMIT)
-            missed = self._gateways.missed_press(machine)
+            missed = machine in self._gateways.missed_presses
             request = StopMachine.Request(cause=to_line(SoftwareStop()) if missed else line, orderly=not missed)
             lost = self._gateways.loss(machine)
             try:

@@ -14,7 +14,7 @@ from mutants.plant import TESTS, Verdict
 def code() -> str:
     """A digest of what decides, and of what simulates."""
     digest = hashlib.sha256()
-    packages = (SERVICES / name for name in ("tms_areas", "tms_decision", "tms_proof"))
+    packages = (SERVICES / name for name in ("tms_areas", "tms_decision", "tms_proof", "tms_ts"))
     for folder in (*packages, TESTS / "simulation", TESTS / "areas"):
         for path in sorted(folder.rglob("*.py")):
             digest.update(path.read_bytes())

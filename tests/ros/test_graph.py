@@ -1,6 +1,8 @@
 """What a process tells of ends that DDS does not connect."""
 
 import logging
+from contextlib import closing
+from uuid import uuid4
 
 import pytest
 import structlog
@@ -36,14 +38,19 @@ def watched(two_nodes: tuple[Ros, Ros], caplog: pytest.LogCaptureFixture) -> Wat
     return Watched(two_nodes[0], caplog)
 
 
-def test_a_process_offers_no_service_that_nobody_uses(two_nodes: tuple[Ros, Ros]) -> None:
+def test_a_process_offers_no_service_that_nobody_uses(own_domain: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """Each one is discovered by every other process: with fifty of them, that is most of what a start costs."""
-    here, other = two_nodes
-    wait_until(lambda: ("server", "/") in other.node.get_node_names_and_namespaces(), LIMIT, "they know each other")
-    here.offer(Trigger, "/wanted", lambda _, response: response)
-    services = lambda: [name for name, _ in other.node.get_service_names_and_types_by_node("server", "/")]  # noqa: E731
-    wait_until(lambda: "/wanted" in services(), LIMIT, "seen")
-    assert services() == ["/wanted"]
+    monkeypatch.setenv("ROS_DOMAIN_ID", str(own_domain))
+    name = f"offers_{uuid4().hex}"  # the graph may still know a node of an earlier test
+    with closing(Ros(name)) as here, closing(Ros("asks")) as other:
+        here.offer(Trigger, f"/{name}", lambda _, response: response)
+
+        def services() -> list[str]:
+            there = (name, "/") in other.node.get_node_names_and_namespaces()
+            return [found for found, _ in other.node.get_service_names_and_types_by_node(name, "/")] if there else []
+
+        wait_until(lambda: f"/{name}" in services(), LIMIT, "seen")
+        assert services() == [f"/{name}"]
 
 
 def test_a_publisher_that_nobody_can_hear_is_told_once(two_nodes: tuple[Ros, Ros], watched: Watched) -> None:

@@ -201,7 +201,7 @@ class Execution:
                 over.append(True)
                 told(None)
             elif unit.gateway.works() and unit.gateway.life != life:
-                asks = _missed_press if unit.name in self.scheduler.unlatched else _end_of_run
+                asks = _missed_press if unit.name in self.scheduler.missed_presses else _end_of_run
                 self.world.send("stops", lambda: unit.gateway.call(asks, self.scheduler.in_life(answered)))
                 self.scheduler.later(0.3, lambda life=unit.gateway.life: ask_again(life))  # type: ignore[misc]
             else:

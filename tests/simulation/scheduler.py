@@ -12,7 +12,6 @@ from simulation.lease import FORGET, PermitProcess
 from simulation.relay import Relay
 from simulation.task import Task, some_task
 from simulation.world import Violation
-from tms_decision.duty import NOTED
 from tms_decision.gateway import effects as f
 from tms_decision.leaf.events import Key
 from tms_decision.owner import Owner
@@ -23,6 +22,7 @@ from tms_decision.run.step import Phase
 from tms_reason import wire
 from tms_reason.reason import Foreign, Reason
 from tms_ts.interrupted_run import InterruptedRun
+from tms_ts.missed_presses import MissedPresses
 from tms_ts.run_states import entered
 
 if TYPE_CHECKING:
@@ -45,9 +45,7 @@ class Scheduler(PermitProcess):
         self.told: dict[str, str] = {}  # outcomes that clients know
         self._receipts: list[Stop] = []
         self._states: dict[str, State] = {}
-        self.unlatched: set[str] = set()  # machines whose latch was not shown since the button was pressed
-        self.shown: set[str] = set()  # whose present gateway shows a latch
-        self.pressed_at = float("-inf")
+        self.missed_presses = MissedPresses(site.units)
         self._gateways: dict[str, PermitLink] = {}
         self._last = 0
         self._ended: dict[int, float] = {}  # when runs have ended, by fencing number
@@ -57,8 +55,8 @@ class Scheduler(PermitProcess):
 
     def start(self) -> None:
         self.begin()
-        self.runs, self._states, self._receipts, self.unlatched, self.shown = {}, {}, [], set(), set()
-        self.hung_at, self.pressed_at = float("inf"), float("-inf")
+        self.runs, self._states, self._receipts = {}, {}, []
+        self.hung_at, self.missed_presses = float("inf"), MissedPresses(self.site.units)
         self._gateways = {name: PermitLink("rc") for name in self.site.units}
         for name, unit in self.site.units.items():
             link = self._gateways[name]
@@ -223,17 +221,11 @@ class Scheduler(PermitProcess):
         now = self.world.now
         self._gateways[name].reported(alive, stale, False, now)
         if alive == 0:
-            self.shown.discard(name)
-        if alive == 0 and now - self.pressed_at < NOTED:  # the latch that it has shown may not be on its disk
-            self.unlatched.add(name)
+            self.missed_presses.lost(name, now)
 
     def _state(self, name: str, state: State) -> None:
         self._states[name] = state
-        if state.latch is None:
-            self.shown.discard(name)
-        else:
-            self.unlatched.discard(name)
-            self.shown.add(name)
+        self.missed_presses.shows(name, state.latch is not None)
         run = next((run for run in self.runs.values() if name in run.task.machines() and run.core.held), None)
         if run is not None and state.latch is not None:
             run.stopped(name, state.latch)
@@ -243,8 +235,7 @@ class Scheduler(PermitProcess):
 
     def pressed(self) -> None:
         """The stop button is pressed."""
-        self.unlatched |= self.site.units.keys() - self.shown
-        self.pressed_at = self.world.now
+        self.missed_presses.pressed(self.world.now)
         for run in [run for run in self.runs.values() if run.core.held]:
             run.stopped(run.units[0].name, SoftwareStop())
 
