@@ -8,13 +8,17 @@ import subprocess
 import sys
 from pathlib import Path
 
+import yaml
+
 from conftest import PROJECT
+from tms_runtime.priority import URGENT
 
 FOLDER = PROJECT / "deploy" / "systemd"
 UNIT = configparser.RawConfigParser(strict=False)
 UNIT.optionxform = str  # type: ignore[assignment,method-assign]
 UNIT.read(FOLDER / "tms@.service")
 WRAPPER = (FOLDER / "tms").read_text()
+STOPPING = ("cps", "scheduler", "machine")  # roles whose processes send a stop, or stop a machine
 TELL = """#!{python}
 import json, os, sys
 json.dump({{"argv": sys.argv[1:], "environment": dict(os.environ)}}, sys.stdout)
@@ -44,6 +48,12 @@ def test_the_socket_is_where_people_see_it() -> None:
     service = UNIT["Service"]
     assert assigned(service["Environment"])["XDG_RUNTIME_DIR"] == f"/run/{service['RuntimeDirectory']}"
     assert service["RuntimeDirectoryMode"] == "0700"
+
+
+def test_unit_and_containers_allow_the_priority_of_a_stop() -> None:
+    roles = [yaml.safe_load((PROJECT / f"deploy/compose/{role}.yml").read_text()) for role in STOPPING]
+    allowed = {one["services"]["tms"]["ulimits"]["rtprio"] for one in roles}
+    assert {*allowed, int(UNIT["Service"]["LimitRTPRIO"])} == {URGENT}
 
 
 def test_the_program_passes_words_and_the_sites_variables(tmp_path: Path) -> None:
