@@ -17,7 +17,7 @@ BRANCHES, LEAVES = 27, 9  # 271 nodes, as the largest task of the field has
 
 
 SHAPE = shape(BRANCHES, LEAVES)
-WHOLE = 0.999  # of a node that is in sight: a tree is moved by fractions of a pixel, and the part is a rounded number
+WHOLE = 1 - 1e-5  # of a node in sight: the browser moves a tree by fractions of a pixel, in numbers of seven digits
 
 
 @pytest.fixture
