@@ -1,7 +1,7 @@
 """How exactly our controllers bring joints and tracks of OperaSim-PhysX to where they should be.
 
-In virtual time, against the stand-in of the simulator; the floor of joints is a controller that sends the reference of
-the moment, as one does that knows nothing of the drives. What a controller costs is measured on processes.
+In virtual time, against the stand-in of the simulator. Notes of joints tell how far off a plain controller is, one that
+sends the reference of the moment and knows nothing of the drives. What a controller costs is measured on processes.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ def _joints(name: str, off: dict[str, float], learns: int) -> Iterable[Figure]:
         settled = max(settled, (seen.settled, f"{model} {joint}"))
         plain = DrivenJoints(model, streams=True, **off)
         floors.append(plain.until(plain.begin(joint, way), joint).worst)
-    yield Figure(f"joints, {name}", "rad", worst[0], WORST, max(floors), note=worst[1])
+    yield Figure(f"joints, {name}", "rad", worst[0], WORST, note=f"{worst[1]}; plain {max(floors):.2f} rad")
     yield Figure(f"settled, {name}", "s", settled[0], SETTLED, note=settled[1])
 
 

@@ -57,7 +57,8 @@ class Figure:
     def verdict(self) -> str:
         if self.value <= self.allowed:
             return "held"
-        return "floor" if self.floor is not None and self.floor > self.allowed else "SHORT"
+        bound = self.floor if self.usual_floor is None else None  # else it only tells the speed of this PC
+        return "floor" if bound is not None and bound > self.allowed else "SHORT"
 
     def as_dict(self) -> dict[str, Any]:
         names = ("name", "unit", "value", "floor", "ratio", "limit", "allowed", "verdict", "note")

@@ -33,6 +33,7 @@ def made_up(monkeypatch: pytest.MonkeyPatch) -> None:
         (Figure("a faster PC", "ms", 1.0, 1.0, floor=0.1, usual_floor=1.0), "held"),
         (Figure("over it", "B", 1.1, 1.0, floor=0.5), "SHORT"),
         (Figure("the floor misses it as well", "B", 2.1, 1.0, floor=2.0), "floor"),
+        (Figure("a floor that tells the speed", "ms", 0.2, 0.1, floor=0.23, usual_floor=0.69), "SHORT"),
         (Figure("below its floor", "B", 0.9, 1.0, floor=2.0), "held"),
         (Figure("counted", "", 1.0, 0.5), "SHORT"),
     ],
