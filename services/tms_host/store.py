@@ -13,6 +13,11 @@ from tms_runtime import state_folder
 
 PROGRAM = PROJECT / ".venv-store" / "bin" / "secantusd-py"
 NEEDED_BYTES = 200 * 2**20
+# The engine (WiredTiger) lets nobody go on while a fifth of its cache waits to be written, and what a write
+# that goes on has changed cannot be written: a document twice (itself, and in the log that change streams
+# read), and its indexes. A fifth must hold three times the largest document (16 MB), or the store hangs.
+# It is a ceiling, not a need.
+CACHE = "384M"
 
 
 def check(site: Site) -> Path:
@@ -47,4 +52,4 @@ def exec_program(site: Site) -> None:
     clean = {key: value for key, value in os.environ.items() if key not in hidden}
     argv = [str(PROGRAM), "--host", "127.0.0.1", "--port", str(site.file.ports.store)]
     sys.stdout.flush()
-    os.execve(PROGRAM, [*argv, "--storage-path", str(folder), "--cache-size", "64M"], clean)
+    os.execve(PROGRAM, [*argv, "--storage-path", str(folder), "--cache-size", CACHE], clean)
