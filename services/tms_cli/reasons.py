@@ -44,6 +44,7 @@ class NobodyAsksThis(Reason, text="there is no question '{question}'", action=QU
 class ManyQuestions(Reason, text="{count} questions are open: {questions}", action=CHOOSE):
     count: int; questions: tuple[str, ...]
 class NoRunActive(Reason, text="no run is active", action=RUNS): pass
+class NoRunInterrupted(Reason, text="no run is interrupted", action=RUNS): pass
 class RunHasEnded(Reason, text="run {run} has ended already: {state}", action=RUNS): run: str; state: str
 class NotEndedYet(Reason, text="run {run} has not ended {seconds} after the cancel", action=EVENTS):
     run: str; seconds: Seconds

@@ -3,13 +3,13 @@
 from collections.abc import Iterable, Mapping
 
 from tms_config.config import Site
+from tms_config.reasons import NoMachine
 from tms_places.reasons import HoldsAndTakes, MayWaitInCircle, NoPlace
 from tms_places.waits import Order, Step, crossing, orders
 from tms_ts.bt import Tree
 from tms_ts.bt.errors import within
 from tms_ts.nodes.place_leaf import PlaceLeaf
 from tms_ts.preflight import Findings, at
-from tms_ts.reasons import NoMachineOfSite
 
 Orders = Mapping[str, set[Order]]  # of each machine
 
@@ -36,7 +36,7 @@ def check_places(tree: Tree, site: Site, known: Iterable[str], others: Orders) -
         if "{" not in place and place not in names:
             found.errors.append(at(leaf.line, within(leaf.template, NoPlace(place, names))))
         if "{" not in machine and machine not in site.file.machines:
-            wrong = NoMachineOfSite(machine, tuple(site.file.machines))
+            wrong = NoMachine(machine, tuple(site.file.machines))
             found.errors.append(at(leaf.line, within(leaf.template, wrong)))
     own = orders_of(tree)
     for circle in crossing({**others, **own}):

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from typing import Any, Protocol
 
 from tms_config.config import Site
+from tms_config.reasons import NoMachine
 from tms_machine.goal_inputs import Inputs, parted
 from tms_reason.reason import Reason
 from tms_ts.bt import Tree
@@ -18,7 +19,6 @@ from tms_ts.reasons import (
     MotionRefused,
     MotionRefusedNow,
     NobodyWrites,
-    NoMachineOfSite,
     NoRecord,
     NoRecordNear,
     NoSharedField,
@@ -143,7 +143,7 @@ def _at_leaf(leaf: LeafGoal | SharedValue, what: Reason) -> Reason:
 
 def _check_goal(found: Findings, goal: LeafGoal, site: Site, around: Surroundings) -> None:
     if "{" not in goal.machine and goal.machine not in site.file.machines:
-        found.errors.append(_at_leaf(goal, NoMachineOfSite(goal.machine, tuple(site.file.machines))))
+        found.errors.append(_at_leaf(goal, NoMachine(goal.machine, tuple(site.file.machines))))
         return
     if "{" in goal.machine or "{" in goal.subtask:
         found.warnings.append(_at_leaf(goal, KnownAtRun()))

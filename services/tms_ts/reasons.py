@@ -65,8 +65,6 @@ class JournalFull(Reason, text="{size} bytes wait already for the database", act
 class DiskFull(Reason, text="too much waits for the disk"): pass
 
 # preflight
-class NoMachineOfSite(Reason, text="the site has no machine '{machine}' (there: {machines})"):
-    machine: str; machines: tuple[str, ...]
 class KnownAtRun(Reason, text="machine or subtask is known only when the leaf starts"): pass
 class BadSubtaskName(Reason,
     text="'{name}' can be no ROS name: at most 200 letters, digits and _, no blanks"): name: str

@@ -56,22 +56,29 @@ def measure() -> Iterable[Figure]:
         own.mesh.tms("up")
         own.mesh.arm()
         _prepare(own)
-        with own.beside("serve"):
-            floor = own.bare("act", "300")
-            with ExitStack() as stack:
-                for name, following in pairwise([*HOPS, ""]):
-                    stack.enter_context(own.beside("link", name, following))
-                hops = at(0.5, own.bare("chain", "100", HOPS[0], HOPS[-1]))
+        before, hops = _bare(own)
         with own.node() as ros:
             leaves, controller = Watch(ros, SUBTASK), Watch(ros, CONTROLLER)
             own.mesh.tms("run", "1", "--wait", limit=180)
-        ends, starts, moves = (sorted(found.values()) for found in (leaves.ended, leaves.accepted, controller.accepted))
+        after, hops_after = _bare(own)
+    floor, hops = sorted(before + after), sorted(hops + hops_after)
+    ends, starts, moves = (sorted(found.values()) for found in (leaves.ended, leaves.accepted, controller.accepted))
     assert len(ends) == len(starts) == LEAVES, f"{len(starts)} goals accepted, {len(ends)} ended, {LEAVES} wanted"
     over, chain = _gaps(ends, starts), _gaps(ends, moves)
     raw = at(0.5, floor)
     yield Figure("hand-over p50", "ms", at(0.5, over), 2 * raw, raw)
     yield Figure("hand-over p99", "ms", at(0.99, over), 3 * at(0.99, floor), at(0.99, floor))
-    yield Figure("chain p50", "ms", at(0.5, chain), 5 * raw, raw, note=f"bare hops alone {hops:.1f} ms")
+    yield Figure("chain p50", "ms", at(0.5, chain), 5 * raw, raw, note=f"bare hops alone {at(0.5, hops):.1f} ms")
+
+
+def _bare(own: Rig) -> tuple[list[float], list[float]]:
+    """Milliseconds of goals between two bare processes, and of chains; before and after, since a PC's speed drifts."""
+    with own.beside("serve"):
+        goals = own.bare("act", "150")
+        with ExitStack() as stack:
+            for name, following in pairwise([*HOPS, ""]):
+                stack.enter_context(own.beside("link", name, following))
+            return goals, own.bare("chain", "50", HOPS[0], HOPS[-1])
 
 
 def _prepare(own: Rig) -> None:

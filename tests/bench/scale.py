@@ -39,7 +39,7 @@ A_PROCESS = 10  # machines in one process of the crowd
 SETTLE, WATCH = 2.0, 12.0  # s
 SLOW = 0.25  # s; p99 of the hand-overs is below it if at most 1 % are above it
 LIMIT, END_LIMIT = 60.0, 20.0  # s; the second for the runs to end after a stop
-CROWD = Path(__file__).parent / "rig/crowd.py"
+CROWD, FORKS = (Path(__file__).parent / "rig" / name for name in ("crowd.py", "forks.py"))
 LEAF = '<Action ID="LeafNodeZx200" model_name="{}" record_name="BENCH" subtask_name="{}"/>'
 
 
@@ -77,10 +77,9 @@ def _cost(size: int) -> Cost:
     names = [f"m{number}" for number in range(size)]
     machines = {name: {"model": "zx200"} for name in names}
     with rig(machines=machines, services={"db": {}, "ts": {}}) as own, ExitStack() as stack:
-        for process in ("tms:store", "tms:db", "tms:ts"):
-            pid = stack.enter_context(_process(own, "-m", "tms_runtime.run", process)).pid
+        pid = stack.enter_context(_processes(own, "tms:store", "tms:db", "tms:ts"))[-1]
         crowds = [
-            stack.enter_context(_process(own, str(CROWD), names[i], ",".join(SUBTASKS), *names[i : i + A_PROCESS]))
+            stack.enter_context(_crowd(own, names[i], ",".join(SUBTASKS), *names[i : i + A_PROCESS]))
             for i in range(0, size, A_PROCESS)
         ]
         for crowd in crowds:
@@ -97,20 +96,38 @@ def _cost(size: int) -> Cost:
 
 
 @contextmanager
-def _process(own: Rig, *words: str) -> Iterator[subprocess.Popen[str]]:
+def _processes(own: Rig, *names: str) -> Iterator[list[int]]:
+    """Processes of the mesh; their pids."""
+    with _program(own, FORKS, *names) as forks:
+        assert forks.stdin is not None
+        assert forks.stdout is not None
+        try:
+            yield json.loads(forks.stdout.readline())
+        finally:
+            forks.stdin.close()
+            forks.wait(LIMIT)
+
+
+@contextmanager
+def _crowd(own: Rig, *words: str) -> Iterator[subprocess.Popen[str]]:
+    with _program(own, CROWD, *words) as crowd:
+        try:
+            yield crowd
+        finally:
+            crowd.kill()
+
+
+@contextmanager
+def _program(own: Rig, path: Path, *words: str) -> Iterator[subprocess.Popen[str]]:
     log = Path(own.mesh.state) / "bench.log"
     log.parent.mkdir(parents=True, exist_ok=True)
-    reported = words[0] == str(CROWD)  # what nobody reads must not go into a pipe: a full one blocks whoever logs
     with (
         log.open("a") as errors,
         subprocess.Popen(
-            [sys.executable, *words], text=True, stdout=subprocess.PIPE if reported else errors, stderr=errors
+            [sys.executable, path, *words], text=True, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=errors
         ) as running,
     ):
-        try:
-            yield running
-        finally:
-            running.kill()
+        yield running
 
 
 def _store_records(ros: Ros, names: list[str]) -> None:

@@ -3,6 +3,7 @@
 import click
 
 from tms_cli import session
+from tms_cli.commands.runs import interrupted
 from tms_cli.words import say
 
 
@@ -12,7 +13,7 @@ from tms_cli.words import say
 def command(run: str, as_json: bool) -> None:
     """Give up an interrupted run for good; it cannot be resumed afterwards.
 
-    RUN is its id or the beginning of it.
+    RUN is its id, the beginning of it, or `last` for the newest interrupted run.
 
     \b
     Example:
@@ -21,6 +22,7 @@ def command(run: str, as_json: bool) -> None:
     from tms_msg_ts.srv import CancelRun
 
     with session.ros() as node:
+        run = interrupted(node, run)
         session.of_any(node, session.site(), CancelRun, "abandon_run", "NO_RUN", run_id=run)
     if as_json:
         session.show_json({"run_id": run, "state": "abandoned"})

@@ -6,6 +6,7 @@ import click
 
 from tms_cli import live, session
 from tms_cli.commands.run import Runner, report
+from tms_cli.commands.runs import interrupted
 from tms_cli.words import say
 from tms_schedulers import asking
 from tms_schedulers.names import Scheduler
@@ -60,14 +61,17 @@ def _explain(found: "ResumePlan.Response") -> None:
 def command(ctx: click.Context, run: str, yes: bool, wait: bool, as_json: bool) -> None:
     """Resume an interrupted run: says what it will do first, and asks.
 
-    RUN is its id or the beginning of it. Machines that were stopped have to be re-armed before.
+    RUN is its id, the beginning of it, or `last` for the newest interrupted run. Machines that were stopped have to be
+    re-armed before.
 
     \b
     Example:
-      tms resume 20260131-060000-1a2b --wait
+      tms resume last --wait
     """
     with session.ros() as node:
+        run = interrupted(node, run)
         scheduler, found = plan(node, run)
+        _say(say("run {run}, task {task}", run=run, task=found.task_id))
         _explain(found)
         if not yes:
             click.confirm(say("Resume it now?"), abort=True, err=True)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from tms_cli import live, session, words
-from tms_cli.reasons import ManyRuns, RunUnknown
+from tms_cli.reasons import ManyRuns, NoRunInterrupted, RunUnknown
 from tms_cli.words import padded, say, state
 from tms_config.clock import unix_time
 from tms_reason.errors import TmsError
@@ -55,6 +55,20 @@ def find_run(runs: "Sequence[R]", word: str) -> "R":
     if len(hits) > 1:
         raise TmsError(ManyRuns(word, len(hits), tuple(run.run_id for run in hits[:4])), "RUN_AMBIGUOUS")
     return hits[0]
+
+
+def interrupted(node: "Ros", word: str) -> str:
+    """The id of the newest interrupted run where the word is `last`; else the word, which the schedulers look up.
+
+    Raises:
+        TmsError: NO_RUN, no run is interrupted; or the database gave no answer.
+    """
+    if word != "last":
+        return word
+    found = next((run for run in history(node, MAX_RUNS) if run.state == "interrupted"), None)
+    if found is None:
+        raise TmsError(NoRunInterrupted(), "NO_RUN")
+    return found.run_id
 
 
 def as_dict(run: "Run") -> dict[str, Any]:

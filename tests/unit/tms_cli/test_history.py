@@ -3,15 +3,16 @@
 import json
 from typing import Any
 
+import click
 import pytest
 from builtin_interfaces.msg import Time
 from tms_msg_db.msg import Event, Run
 from tms_msg_db.srv import ListEvents, ListRuns
 from tms_msg_ts.msg import RunState, RunStates
-from tms_msg_ts.srv import CancelRun
+from tms_msg_ts.srv import CancelRun, ResumePlan
 
 from tms_cli import session
-from tms_cli.commands import cancel, events, runs
+from tms_cli.commands import abandon, cancel, events, resume, runs
 from tms_cli.reasons import SchedulerSilent
 from tms_machine.values import to_parameters
 from tms_reason.errors import RosError, TmsError
@@ -183,3 +184,20 @@ def test_what_the_database_cannot_tell_is_left_to_the_scheduler(mesh, tms, away:
     mesh.answers["/tms/cancel_run"] = RosError(Foreign("there is no run r9"), "NO_RUN")
     end = tms(cancel.command, "r9")
     assert ("/tms/cancel_run", {"run_id": "r9"}) in mesh.asked and "there is no run r9" in str(end.exception)
+
+
+def test_resume_last_and_abandon_last_mean_the_newest_interrupted_run(mesh, tms) -> None:
+    past = [made("r4"), made("r3", "interrupted"), made("r2", "interrupted")]
+    mesh.answers["/tms/db/list_runs"] = ListRuns.Response(runs=past)
+    mesh.answers["/tms/resume_plan"] = ResumePlan.Response(task_id=7, done=["swing"])
+    mesh.answers["/tms/abandon_run"] = CancelRun.Response()
+    asked = tms(resume.command, "last")
+    assert "run r3, task 7" in asked.stderr and "1 leaves have ended" in asked.stderr and asked.exit_code == 1
+    assert "run r3 is abandoned" in tms(abandon.command, "last").stdout
+    assert [fields for name, fields in mesh.asked if name != "/tms/db/list_runs"] == [{"run_id": "r3"}] * 2
+
+
+@pytest.mark.parametrize("command", [resume.command, abandon.command])
+def test_last_is_refused_where_no_run_is_interrupted(mesh, tms, command: click.Command) -> None:
+    mesh.answers["/tms/db/list_runs"] = ListRuns.Response(runs=[NEWEST])
+    assert "no run is interrupted" in str(tms(command, "last").exception)

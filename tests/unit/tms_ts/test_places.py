@@ -9,11 +9,11 @@ import yaml
 
 from conftest import site_data
 from tms_config.config import Site, load_site
+from tms_config.reasons import NoMachine
 from tms_places.reasons import HoldsAndTakes, MayWaitInCircle, NoPlace, WaitsForLease
 from tms_ts.bt import FAILURE, RUNNING, SUCCESS
 from tms_ts.place_check import check_places, orders_of
 from tms_ts.preflight import at
-from tms_ts.reasons import NoMachineOfSite
 from tms_ts.tree_reasons import NameMissing
 from unit.tms_ts.fakes import FakePlaces, FakeWorld
 from unit.tms_ts.trees import ticked, tree
@@ -78,7 +78,7 @@ def test_unknown_places_and_machines_are_errors(site: Site) -> None:
     one = tree(f"<Sequence>\n{hold('rood')}{hold('{key}')}{free('road', 'nobody')}</Sequence>")
     found = check_places(one, site, ("road",), {})
     machines = tuple(site.file.machines)
-    assert found.errors == [at(4, NoPlace("rood", ("road",))), at(4, NoMachineOfSite("nobody", machines))]
+    assert found.errors == [at(4, NoPlace("rood", ("road",))), at(4, NoMachine("nobody", machines))]
     assert not found.warnings
 
 
