@@ -11,10 +11,11 @@ from tms_config.config import Site
 from tms_interfaces.generated import Reply, Req, ServiceType
 from tms_reason.errors import RosError, TmsError
 from tms_reason.names import check_sent
-from tms_ros.client import Call, Peer
+from tms_ros.client import Call
 from tms_ros.node import Ros
 from tms_schedulers.asking import of_all, of_any, of_its_own
 from tms_schedulers.names import Scheduler, schedulers
+from tms_schedulers.sending import ExecutePeer, send
 from tms_ur.answers import checked, error_in
 from tms_ur.reasons import RunNotBegun, StartRefused
 from tms_ur.start_models import ResumePlan
@@ -22,7 +23,6 @@ from tms_ur.start_models import ResumePlan
 SCHEDULER = "tms:ts"
 CALL_LIMIT = 4.0  # s for an answer of a module
 NO_RUN, NO_QUESTION = "NO_RUN", "NO_QUESTION"  # codes of a scheduler that does not know them
-ExecutePeer = Peer[ExecuteTask.Goal, ExecuteTask.Result, ExecuteTask.Feedback]
 START_LIMIT = 30.0  # s for a run to begin; the scheduler may have to start its subtasks first
 
 
@@ -43,8 +43,7 @@ class RunCalls:
         return of_its_own(self._site, lambda one: self._start(self._schedulers[one], goal), NO_RUN)
 
     def _start(self, scheduler: ExecutePeer, goal: ExecuteTask.Goal) -> str:
-        scheduler.wait_ready(CALL_LIMIT)
-        call = scheduler.send(goal)
+        call = send(scheduler, goal)
         call.wait_for(lambda: _begun(call) or call.outcome is not None, START_LIMIT)
         if call.outcome is None and call.feedback is not None:  # it runs, or takes long to prepare
             return str(call.feedback.run_id)

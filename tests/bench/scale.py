@@ -3,18 +3,19 @@
 The scheduler, the database and the store are the real ones; machines, gateways and subtasks are at the level of
 messages (rig/crowd.py), since 50 times their processes would not fit on a PC. The group `stop` has 20 real gateways.
 A goal takes 10 s, as a motion of a machine does: 50 machines ask for 5 hand-overs a second. The floor is the same site
-with one machine.
+with one machine. Of two schedulers, that share the machines, the figures are those of the one that does worse.
 """
 
 from __future__ import annotations
 
 import json
+import os
 import subprocess
 import sys
 import time
 import urllib.request
-from collections.abc import Callable, Iterable, Iterator
-from contextlib import ExitStack, contextmanager
+from collections.abc import Iterable, Iterator
+from contextlib import AbstractContextManager, ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -30,9 +31,13 @@ from tms_config.processes import find
 from tms_machine.values import to_parameters
 from tms_ros.client import Call
 from tms_ros.node import Ros
+from tms_schedulers.names import own as scheduler_of
+from tms_schedulers.names import schedulers
 
-SIZES = (1, 5, 20, 50)
+SIZES = ((1, 1), (5, 1), (20, 1), (50, 1), (50, 2))  # machines, schedulers
 RUNS = 20  # at most; a run moves a machine at least
+SERVICES: dict[str, object] = {"db": {}, "ts": {}}
+FIRST, SECOND = "cps", "east"  # PCs of a site of two schedulers
 JOINTS = {"boom": -46.0, "swing": 0.0, "arm": 114.0, "bucket": 46.0}  # deg
 SUBTASKS = [f"st_zx200_sample_{joint}" for joint in JOINTS]
 A_PROCESS = 10  # machines in one process of the crowd
@@ -53,16 +58,16 @@ class Cost:
     received: float  # ms from the press to the last machine
     cancelled: float  # ms from the press to the last goal that was asked to end
     left: int  # runs that have not ended END_LIMIT after the stop
-    cpu: float  # % of a core, the scheduler's
-    memory: float  # MB, the scheduler's
+    cpu: float  # % of a core, a scheduler's
+    memory: float  # MB, a scheduler's
 
 
 def measure() -> Iterable[Figure]:
     least: Cost | None = None
-    for size in SIZES:
-        cost = _cost(size)
+    for size, count in SIZES:
+        cost = _cost(size, count)
         least = least or cost
-        name = f"{size} machines, {min(size, RUNS)} runs"
+        name = f"{size} machines, {min(size, RUNS)} runs" if count == 1 else f"{size} machines, two schedulers"
         note = f"hand-over {cost.handed_over:.1f} ms"
         yield Figure(f"{name}: late ticks", "%", cost.late, 1.0, max(least.late, 0.01), note=note)
         yield Figure(f"  hand-overs over {1000 * SLOW:.0f} ms", "%", cost.slow, 1.0)
@@ -73,11 +78,14 @@ def measure() -> Iterable[Figure]:
         yield Figure("  memory (PSS) of tms:ts", "MB", cost.memory, 120.0, least.memory)
 
 
-def _cost(size: int) -> Cost:
+def _cost(size: int, count: int) -> Cost:
     names = [f"m{number}" for number in range(size)]
-    machines = {name: {"model": "zx200"} for name in names}
-    with rig(machines=machines, services={"db": {}, "ts": {}}) as own, ExitStack() as stack:
-        pid = stack.enter_context(_processes(own, "tms:store", "tms:db", "tms:ts"))[-1]
+    shares = [names[number::count] for number in range(count)]
+    with _site(shares) as own, ExitStack() as stack:
+        pids = {"tms:ts": stack.enter_context(_processes(own, dict(os.environ), "tms:store", "tms:db", "tms:ts"))[-1]}
+        if count > 1:
+            second = f"tms:ts_{SECOND}"
+            pids[second] = stack.enter_context(_processes(own, own.environment_of(SECOND), second))[-1]
         crowds = [
             stack.enter_context(_crowd(own, names[i], ",".join(SUBTASKS), *names[i : i + A_PROCESS]))
             for i in range(0, size, A_PROCESS)
@@ -87,18 +95,31 @@ def _cost(size: int) -> Cost:
             assert crowd.stdout.readline() == "ready\n"
         ros = stack.enter_context(own.node())
         _store_records(ros, names)
-        calls = _start(ros, names)
+        calls = [call for process, share in zip(pids, shares, strict=True) for call in _start(own, ros, process, share)]
+        until(lambda: all(_runs(call) for call in calls), "every run goes", LIMIT)
         time.sleep(SETTLE)
-        late, handed_over, slow, cpu = _watched(own, pid)
-        memory = psutil.Process(pid).memory_full_info().pss / 1e6
+        late, handed_over, slow, cpu = map(max, zip(*_watched(own, pids), strict=True))
+        memory = max(psutil.Process(pid).memory_full_info().pss / 1e6 for pid in pids.values())
         received, cancelled = _press(ros, crowds)
         return Cost(late, handed_over, slow, received, cancelled, _left(calls), cpu, memory)
 
 
+def _site(shares: list[list[str]]) -> AbstractContextManager[Rig]:
+    """A site whose schedulers have these machines."""
+    machines = {name: {"model": "zx200"} for share in shares for name in share}
+    if len(shares) == 1:
+        return rig(machines=machines, services=SERVICES)
+    pcs = {
+        FIRST: {"address": "127.0.0.1", "roles": ["cps", "machine", "sensing", "sim"]},
+        SECOND: {"address": "127.0.0.1", "roles": ["scheduler"], "machines": shares[1]},
+    }
+    return rig(FIRST, machines=machines, services=SERVICES, pcs=pcs)
+
+
 @contextmanager
-def _processes(own: Rig, *names: str) -> Iterator[list[int]]:
+def _processes(own: Rig, env: dict[str, str], *names: str) -> Iterator[list[int]]:
     """Processes of the mesh; their pids."""
-    with _program(own, FORKS, *names) as forks:
+    with _program(own, env, FORKS, *names) as forks:
         assert forks.stdin is not None
         assert forks.stdout is not None
         try:
@@ -110,7 +131,7 @@ def _processes(own: Rig, *names: str) -> Iterator[list[int]]:
 
 @contextmanager
 def _crowd(own: Rig, *words: str) -> Iterator[subprocess.Popen[str]]:
-    with _program(own, CROWD, *words) as crowd:
+    with _program(own, dict(os.environ), CROWD, *words) as crowd:
         try:
             yield crowd
         finally:
@@ -118,13 +139,18 @@ def _crowd(own: Rig, *words: str) -> Iterator[subprocess.Popen[str]]:
 
 
 @contextmanager
-def _program(own: Rig, path: Path, *words: str) -> Iterator[subprocess.Popen[str]]:
+def _program(own: Rig, env: dict[str, str], path: Path, *words: str) -> Iterator[subprocess.Popen[str]]:
     log = Path(own.mesh.state) / "bench.log"
     log.parent.mkdir(parents=True, exist_ok=True)
     with (
         log.open("a") as errors,
         subprocess.Popen(
-            [sys.executable, path, *words], text=True, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=errors
+            [sys.executable, path, *words],
+            env=env,
+            text=True,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=errors,
         ) as running,
     ):
         yield running
@@ -143,17 +169,17 @@ def _store_records(ros: Ros, names: list[str]) -> None:
     assert all(stored(name) for name in names[1:])
 
 
-def _start(ros: Ros, names: list[str]) -> list[Call]:
-    """The machines dealt out to the runs; all runs are there, and go on for ever."""
-    hands = [names[number::RUNS] for number in range(min(RUNS, len(names)))]
-    scheduler = ros.peer(ExecuteTask, "/tms/execute_task")
+def _start(own: Rig, ros: Ros, process: str, names: list[str]) -> list[Call]:
+    """A scheduler's machines dealt out to its runs, which go on for ever."""
+    runs = RUNS // len(schedulers(own.site))
+    hands = [names[number::runs] for number in range(min(runs, len(names)))]
+    scheduler = ros.peer(ExecuteTask, scheduler_of(own.site, process).named("execute_task"))
     scheduler.wait_ready(LIMIT)
     calls = []
     for hand in hands:
         added = ros.call(AddTask, "/tms/db/add_task", AddTask.Request(task_sequence=_tree(hand)), LIMIT)
         assert not added.error_code, added.error_msg
         calls.append(scheduler.send(ExecuteTask.Goal(task_id=added.task_id, ignore_warnings=True)))
-    until(lambda: all(_runs(call) for call in calls), "every run goes", LIMIT)
     return calls
 
 
@@ -184,25 +210,32 @@ def _tree(machines: list[str]) -> str:
     return f'<root main_tree_to_execute="M"><BehaviorTree ID="M">{inside}</BehaviorTree></root>'
 
 
-def _watched(own: Rig, pid: int) -> tuple[float, float, float, float]:
-    """Of the scheduler, in a while: late ticks [%], mean hand-over [ms], slow ones [%], processor time [% core]."""
+def _watched(own: Rig, pids: dict[str, int]) -> list[tuple[float, float, float, float]]:
+    """Of each scheduler, in a while: late ticks [%], mean hand-over [ms], slow ones [%], processor time [% core]."""
 
-    def used() -> float:
-        return sum(psutil.Process(pid).cpu_times()[:2])
+    def used() -> dict[str, float]:
+        return {name: sum(psutil.Process(pid).cpu_times()[:2]) for name, pid in pids.items()}
 
-    before, cpu, begun = _counted(own), used(), time.perf_counter()
+    before, cpu, begun = {name: _counted(own, name) for name in pids}, used(), time.perf_counter()
     time.sleep(WATCH)
-    after, cpu, passed = _counted(own), used() - cpu, time.perf_counter() - begun
-    grown: Callable[[str], float] = lambda name: after[f"tms_ts_{name}"] - before[f"tms_ts_{name}"]  # noqa: E731
+    after, ended, passed = {name: _counted(own, name) for name in pids}, used(), time.perf_counter() - begun
+    return [
+        (*_ticks_and_hand_overs(before[name], after[name]), 100 * (ended[name] - cpu[name]) / passed) for name in pids
+    ]
+
+
+def _ticks_and_hand_overs(before: dict[str, float], after: dict[str, float]) -> tuple[float, float, float]:
+    def grown(name: str) -> float:
+        return after[f"tms_ts_{name}"] - before[f"tms_ts_{name}"]
+
     late = 100 * grown("tick_overruns_total") / grown("tick_seconds_count")
     hand_overs = max(1, grown("handover_seconds_count"))
     handed_over = 1000 * grown("handover_seconds_sum") / hand_overs
-    slow = 100 * (1 - grown(f"handover_seconds_bucket_{SLOW}") / hand_overs)
-    return late, handed_over, slow, 100 * cpu / passed
+    return late, handed_over, 100 * (1 - grown(f"handover_seconds_bucket_{SLOW}") / hand_overs)
 
 
-def _counted(own: Rig) -> dict[str, float]:
-    row = find(own.site, "tms:ts")
+def _counted(own: Rig, process: str) -> dict[str, float]:
+    row = find(own.site, process)
     with urllib.request.urlopen(f"http://{row.address}:{row.port}/metrics", timeout=5) as answer:
         families = text_string_to_metric_families(answer.read().decode())
         return {

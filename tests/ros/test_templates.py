@@ -10,7 +10,8 @@ from tms_msg_ts.srv import CancelRun, CheckTask
 
 from few_processes import LIMIT, SITE, Mesh, bare
 from tms_machine.values import from_parameters
-from tms_ros.client import Call
+from tms_schedulers import sending
+from tms_schedulers.sending import ExecuteCall
 from words import words
 
 pytestmark = pytest.mark.ros
@@ -37,10 +38,8 @@ def mesh(tmp_path: Path, own_domain: int) -> Iterator[Mesh]:
         yield mesh
 
 
-def send(mesh: Mesh, **goal: object) -> Call:
-    scheduler = mesh.ros.peer(ExecuteTask, "/tms/execute_task")
-    scheduler.wait_ready(LIMIT)
-    return scheduler.send(ExecuteTask.Goal(**goal))
+def send(mesh: Mesh, **goal: object) -> ExecuteCall:
+    return sending.send(mesh.ros.peer(ExecuteTask, "/tms/execute_task"), ExecuteTask.Goal(**goal))
 
 
 def begun(mesh: Mesh, **goal: object) -> str:

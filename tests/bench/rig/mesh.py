@@ -13,6 +13,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import pytest
 import yaml
 
 from conftest import Mesh, claimed_domain, ports_of, site_data
@@ -51,6 +52,13 @@ class Rig:
             finally:
                 process.kill()
 
+    def environment_of(self, pc: str) -> dict[str, str]:
+        """What the processes of another PC need, which has a state folder of its own."""
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setenv("TMS_PC", pc)
+            patch.setenv("TMS_STATE", str(self.mesh.state.with_name(pc)))
+            return {**os.environ, **environment.environment(load_site())}
+
     @contextmanager
     def node(self) -> Iterator[Ros]:
         """A node of this process."""
@@ -64,14 +72,17 @@ class Rig:
 
 
 @contextmanager
-def rig(**changes: object) -> Iterator[Rig]:
-    """A site with a domain and ports of its own; its mesh is not up yet, and is down afterwards."""
+def rig(pc: str = "", **changes: object) -> Iterator[Rig]:
+    """A site with a domain and ports of its own; its mesh is not up yet, and is down afterwards.
+
+    `pc`: which one this is, of a site of several.
+    """
     with claimed_domain() as domain, tempfile.TemporaryDirectory(prefix="tms-bench-") as name:
         folder, old = Path(name), dict(os.environ)
         file = folder / "site.yaml"
         file.write_text(yaml.safe_dump(site_data(domain, ports_of(domain), **changes)))
         mesh = Mesh(file, folder / "state")
-        os.environ.update(mesh.env)
+        os.environ.update({**mesh.env, "TMS_PC": pc} if pc else mesh.env)
         try:
             site = load_site()
             environment.enter(site)

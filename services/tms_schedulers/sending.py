@@ -1,0 +1,33 @@
+"""Sends a run to its scheduler, which may have been restarted a moment ago."""
+
+from tms_msg_ts.action import ExecuteTask
+
+from tms_ros.client import DISCOVERY_LEASE, Call, Peer
+from tms_ros.goals import Outcome
+
+ExecutePeer = Peer[ExecuteTask.Goal, ExecuteTask.Result, ExecuteTask.Feedback]
+ExecuteCall = Call[ExecuteTask.Result, ExecuteTask.Feedback]
+LIMIT = 4.0  # s for the scheduler to be there, and to say whether it knows a goal
+
+
+def send(scheduler: ExecutePeer, goal: ExecuteTask.Goal) -> ExecuteCall:
+    """Send a run, and wait until the scheduler has answered; at most some 6 s, as this one should within moments.
+
+    For some seconds, discovery counts a process that was killed: a goal that finds no other one then gets lost. Once
+    that is over, the goal is sent again if the successor says that it does not know it.
+
+    Raises:
+        RosError: NO_SERVER.
+    """
+    call = _sent(scheduler, goal)
+    if not call.wait_for(lambda: call.accepted or call.outcome is not None, DISCOVERY_LEASE):
+        scheduler.resolve_unanswered(call)
+        call.wait_for(lambda: call.outcome is not None, LIMIT)
+        if call.outcome is Outcome.LOST:
+            return _sent(scheduler, goal)
+    return call
+
+
+def _sent(scheduler: ExecutePeer, goal: ExecuteTask.Goal) -> ExecuteCall:
+    scheduler.wait_ready(LIMIT)
+    return scheduler.send(goal)
