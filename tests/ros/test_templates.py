@@ -1,6 +1,10 @@
-"""A real scheduler runs a task with templates; a run that it has lost is resumed with those of its start."""
+"""A real scheduler runs a task with templates; a run that it has lost is resumed with those of its start.
+
+One that was sent to it as it got lost goes to its successor.
+"""
 
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
@@ -82,3 +86,16 @@ def test_a_run_keeps_the_templates_of_its_start(mesh: Mesh) -> None:
     mesh.until(lambda: shapes(mesh, run) == [old, old], "the tree of the resumed run")
     assert mesh.call(CancelRun, "/tms/cancel_run", run_id=run).error_code == ""
     mesh.until(lambda: state(mesh, run) == "cancelled", "cancelled run")
+
+
+def test_a_run_that_got_lost_with_its_scheduler_goes_to_the_successor(mesh: Mesh) -> None:
+    mesh.db(AddTemplate, "add_template", template_name="Wait", task_sequence=WAIT.format("w"))
+    mesh.call(CheckTask, "/tms/check_task", task_id=1)
+    scheduler = mesh.ros.peer(ExecuteTask, "/tms/execute_task")
+    scheduler.wait_ready(LIMIT)
+    mesh.kill("tms:ts")
+    with ThreadPoolExecutor() as pool:
+        sent = pool.submit(sending.send, scheduler, ExecuteTask.Goal(task_id=1))
+        mesh.start("tms:ts")
+        call = sent.result(LIMIT)
+    assert call.wait_for(lambda: call.accepted, LIMIT)
