@@ -2,9 +2,9 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 
+from tms_decision import STOP_PROVEN
 from tms_decision import reasons as r
 from tms_decision.data import Data
-from tms_decision.gateway.stops import STOP_PROVEN
 from tms_reason.reason import Reason
 
 CLOCKS = 1.0  # s by which the clocks of PCs may differ

@@ -4,7 +4,7 @@ from typing import Any
 
 from tms_config.clock import monotonic
 from tms_config.naming import process_of
-from tms_decision.gateway.stops import STOP_PROVEN
+from tms_decision import STOP_PROVEN
 from tms_decision.reasons import ProcessLost
 from tms_machine.reasons import MotionNotEnded
 from tms_reason.reason import Reason

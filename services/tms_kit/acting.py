@@ -7,7 +7,7 @@ from typing import Any
 from tms_config.clock import monotonic
 from tms_config.models import Joint, MachineModel
 from tms_config.naming import process_of
-from tms_decision.gateway.stops import STOP_PROVEN
+from tms_decision import STOP_PROVEN
 from tms_decision.reasons import ProcessLost
 from tms_interfaces.generated import ActionType, F, G, R
 from tms_kit.yard import Yard

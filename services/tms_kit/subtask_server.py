@@ -31,6 +31,7 @@ from tms_runtime.app import App
 
 DB_LIMIT = 10.0  # s to wait for the database at the start; after that, goals are refused with a reason
 RECORD_LIMIT = 0.8  # s for the database while a goal waits for its answer: a C++ leaf gives up after 1 s
+DISCOVERY_CHECK_PERIOD = 0.05  # s; forty subtasks of a PC that starts look for the database at the same time
 GONE_LIMIT, MOMENT = GONE + 0.5, 0.02  # s that a goal waits for the end of the last one; between looks
 FEEDBACK_GAP = 0.1  # s between feedbacks
 LeafGoal = Goal[LeafNodeBase.Goal, LeafNodeBase.Feedback]
@@ -65,7 +66,7 @@ class _Server:
         """Serve once the database answers: the first goal comes as soon as the action is discovered."""
         app, deadline = self._app, monotonic() + DB_LIMIT
         while not app.ros.has_service(GetParameter, "/tms/db/get_parameter") and monotonic() < deadline:
-            app.stopping.wait(0.02)
+            app.stopping.wait(DISCOVERY_CHECK_PERIOD)
         app.ros.serve(*self._action, self.run, self.accept)
         self.offered = True
 

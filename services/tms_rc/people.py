@@ -11,6 +11,7 @@ from std_msgs.msg import Bool
 from tms_msg_rc.srv import Rearm, StopMachine, TakeMachine
 
 from tms_config.models import Border
+from tms_decision import DISK_LIMIT, STOP_PROVEN
 from tms_decision.gateway.effects import Rearmed, Stopped, Taken
 from tms_decision.gateway.events import (
     Event,
@@ -23,7 +24,6 @@ from tms_decision.gateway.events import (
     StopAsked,
     TakeAsked,
 )
-from tms_decision.gateway.stops import DISK_LIMIT, STOP_PROVEN
 from tms_decision.reasons import CausePersists
 from tms_machine.border import standby, stood_in
 from tms_rc.shell import Shell

@@ -7,7 +7,7 @@ from control_msgs.action import FollowJointTrajectory
 from tms_config.clock import monotonic
 from tms_config.naming import process_of
 from tms_control.reasons import PathBlocked
-from tms_decision.gateway.stops import STOP_PROVEN
+from tms_decision import STOP_PROVEN
 from tms_decision.reasons import ProcessLost
 from tms_machine import stamps
 from tms_machine.reasons import MotionNotEnded, NoReason

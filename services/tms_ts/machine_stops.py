@@ -7,7 +7,8 @@ from tms_msg_rc.msg import StopReceipt
 from tms_msg_rc.srv import StopMachine
 
 from tms_config.clock import monotonic
-from tms_decision.gateway.stops import RECEIPT_LIMIT, stood_after
+from tms_decision import RECEIPT_LIMIT
+from tms_decision.gateway.stops import stood_after
 from tms_decision.reasons import MachineUnconfirmed, ProcessLost, SoftwareStop, StopUnconfirmed
 from tms_machine.reasons import NoReason
 from tms_reason import wire

@@ -2,7 +2,7 @@
 
 from tms_msg_rc.srv import Rearm, StopMachine, TakeMachine
 
-from tms_decision.gateway.stops import RECEIPT_LIMIT
+from tms_decision import RECEIPT_LIMIT
 from tms_reason import wire
 from tms_reason.errors import RosError
 from tms_reason.reason import Reason

@@ -78,7 +78,7 @@ def _start_all(own: Rig, rows: list[Process]) -> float:
     supervisor, begun = Supervisor(own.site), time.perf_counter()
     for row in rows:
         supervisor.control("start", row.full)
-    until(lambda: all(unready(row) is None for row in rows), "all processes ready")
+    until(lambda: all(unready(row) is None for row in rows), "all processes ready", every=0.2)  # they need the PC
     return time.perf_counter() - begun
 
 

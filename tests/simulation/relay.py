@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Protocol
 
 from simulation.lease import PermitProcess
 from simulation.order import Order
-from tms_decision.gateway.stops import STOP_PROVEN
+from tms_decision import STOP_PROVEN
 from tms_decision.permit_link import NOBODY, PermitLink
 from tms_decision.reasons import ProcessLost
 from tms_reason.reason import Foreign, Reason

@@ -1,12 +1,12 @@
 """Goals of clients that wait: which one may move the machine, one at a time."""
 
+from tms_decision import STOP_PROVEN
 from tms_decision import reasons as r
 from tms_decision.chain import gap, members
 from tms_decision.gateway import active, notes, stops
 from tms_decision.gateway.effects import End, Publish
 from tms_decision.gateway.events import GoalAsked
 from tms_decision.gateway.state import Gateway, Goal, Phase
-from tms_decision.gateway.stops import STOP_PROVEN, StopKind
 from tms_reason.reason import Reason
 
 PERMIT_LIMIT = 3.0  # s that a goal may arrive before the permits behind it: a busy PC discovers new processes late
@@ -28,7 +28,7 @@ def cancel(gateway: Gateway, now: float, number: int) -> None:
         if goal.number == number:
             goal.cancelled = True
             if goal is gateway.active and goal.stop is None:
-                stops.stop(gateway, now, r.Cancelled(), StopKind.PLAIN)
+                stops.stop(gateway, now, r.Cancelled(), stops.StopKind.PLAIN)
 
 
 def _refuse(gateway: Gateway, asked: GoalAsked, why: Reason) -> None:
@@ -64,8 +64,7 @@ def _settle(gateway: Gateway, goal: Goal, now: float) -> None:
     if not goal.seen(gateway) or (commands and not late):
         return
     gateway.waiting.remove(goal)
-    wrong = _keeps(gateway, goal)
-    if wrong is not None:
+    if (wrong := _keeps(gateway, goal)) is not None:
         _refuse(gateway, goal.asked, wrong)
         return
     gateway.active = goal

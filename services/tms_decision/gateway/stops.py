@@ -6,6 +6,7 @@ The order of a stop is command, proof, note, receipt: a receipt is on the disk b
 from dataclasses import replace
 from enum import Enum
 
+from tms_decision import DISK_LIMIT, STOP_PROVEN
 from tms_decision import reasons as r
 from tms_decision.gateway import effects as f
 from tms_decision.gateway import notes
@@ -14,10 +15,7 @@ from tms_decision.gateway.state import Gateway, Goal, Stop
 from tms_proof.proof import NOTHING, UNKNOWN, Expected
 from tms_reason.reason import Reason, Several
 
-STOP_PROVEN = 10.0  # s within which a gateway sees that a machine stands, or reports that it does not
 AGAIN = 0.5  # s between repeated commands while it is not proven
-RECEIPT_LIMIT = STOP_PROVEN + 3.0  # s without a receipt after which a gateway counts as silent
-DISK_LIMIT = 1.0  # s more for the disk; then the answer does not wait for it any longer
 
 
 class StopKind(Enum):

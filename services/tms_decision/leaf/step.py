@@ -15,8 +15,7 @@ ASK_AGAIN = 0.5  # s until a goal is sent again, also after a failure: a loop ar
 def ask(goals: LeafGoals, asked: e.GoalAsked, now: float) -> tuple[LeafGoal, list[f.Effect]]:
     """Begin a goal; it is sent at once if the machine is free and the server is there."""
     goal = LeafGoal(asked, now)
-    before = goals.replay.take(goal.key)
-    if before is not None:
+    if (before := goals.replay.take(goal.key)) is not None:
         goal.state, goal.reason = (GoalState.SUCCEEDED, None) if before else (GoalState.FAILED, r.FailedBefore())
         goals.note(goal, r.NotRepeatedDone(goal.name) if before else r.NotRepeatedFailed(goal.name))
     else:

@@ -93,13 +93,13 @@ def rig(pc: str = "", **changes: object) -> Iterator[Rig]:
             os.environ.update(old)
 
 
-def until(holds: Callable[[], bool], what: str, seconds: float = LIMIT) -> float:
-    """Wait for something; returns how many seconds it took."""
+def until(holds: Callable[[], bool], what: str, seconds: float = LIMIT, every: float = 0.02) -> float:
+    """Wait for something, and look each `every` [s]; returns how many seconds it took."""
     begun = time.perf_counter()
     while not holds():
         if time.perf_counter() - begun > seconds:
             raise TimeoutError(f"not within {seconds:.0f} s: {what}")
-        time.sleep(0.02)
+        time.sleep(every)
     return time.perf_counter() - begun
 
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from tms_decision.gateway.stops import STOP_PROVEN
+from tms_decision import STOP_PROVEN
 from tms_decision.reasons import GoalNotEnded, HaltedGoalsEnd, NotResumed, SoftwareStop, StopRequested
 from tms_decision.run import effects as f
 from tms_decision.run import events as e
