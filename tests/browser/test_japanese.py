@@ -48,4 +48,6 @@ def test_a_run_that_is_stopped(page: Page, address: str, idle: Mesh) -> None:
         assert foreign(page, address) == [], name
     page.goto(f"{address}/#history/{run}")
     expect(page.locator("#list_events tr").first).to_be_visible()
+    page.locator("#run_log summary").click()  # whoever opens it sees English
+    expect(page.locator("#run_log .log_line").first).to_be_visible()
     assert foreign(page, address) == []

@@ -266,7 +266,7 @@ def test_the_logs_of_a_machine_in_one(page: Page, address: str, yard: Yard, monk
 def test_the_log_of_a_run_follows_the_cursor(
     page: Page, address: str, yard: Yard, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A line puts the cursor where it is; the log is asked for once."""
+    """A line puts the cursor where it is; the log is asked for once, when it is opened."""
     facts = {"node": "0", "text": "x IDLE -> RUNNING"}
     tree = Event(number=1, stamp=NOON, kind="tree", node="", text="", values={**shape(1, 1)})
     late = Event(number=2, stamp=NOON + timedelta(seconds=4), kind="node", **facts)
@@ -279,6 +279,9 @@ def test_the_log_of_a_run_follows_the_cursor(
     asked: list[str] = []
     page.on("request", lambda request: asked.append(request.url) if "/api/logs" in request.url else None)
     page.goto(f"{address}/#history/r-1")
+    expect(page.locator("#past [data-path]").first).to_be_visible()
+    assert not asked
+    page.get_by_text("Log up to the cursor").click()
     rows = page.locator("#run_log .log_line")
     expect(rows).to_have_count(2)  # up to the last event
     lost = rows.nth(1)

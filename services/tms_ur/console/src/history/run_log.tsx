@@ -1,4 +1,5 @@
 // The log lines of a run up to the cursor: of its machines' processes and the scheduler. A line puts the cursor there.
+// They are in English and name what ROS has, for whoever looks for a fault: shown, and read, on request.
 import { useEffect, useMemo, useRef, useState } from "react";
 import { useTranslation } from "react-i18next";
 import { LogNotes } from "../log_notes";
@@ -19,19 +20,29 @@ interface Props {
   onTime: (time: number) => void;
 }
 
-export function RunLog({ id, live, time, onTime }: Props) {
+export function RunLog(props: Props) {
+  const { t } = useTranslation();
+  const [open, setOpen] = useState(false);
+  return (
+    <details id="run_log" onToggle={(event) => setOpen(event.currentTarget.open)}>
+      <summary>{t("run_log")}</summary>
+      {open && <Log {...props} />}
+    </details>
+  );
+}
+
+function Log({ id, live, time, onTime }: Props) {
   const { t } = useTranslation();
   const { logs, error } = useLogs(id, live);
   const rows = useMemo(() => rowsOf(logs?.lines ?? []), [logs]);
   const shown = linesUpTo(rows, time, SHOWN);
   return (
-    <section id="run_log" aria-label={t("run_log")}>
-      <h3>{t("run_log")}</h3>
+    <>
       <Problem id="run_log_problem" error={error} />
       {logs !== null && <LogNotes logs={logs} />}
       {rows.length > 0 && shown.length === 0 && <p>{t("no_lines_yet")}</p>}
       <Lines rows={shown} onTime={onTime} />
-    </section>
+    </>
   );
 }
 
