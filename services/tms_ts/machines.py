@@ -34,6 +34,7 @@ from tms_ts.sent_goal import SentGoal, feedback
 NO_STORE = (NoDatabase.code, "STORE_DOWN")  # why a subtask refuses a goal when its record cannot be read now
 # Reasons with which a goal fails while a process is being restarted.
 UNREACHED = (NoAnswer, NoServer, Rejected, NoJointState, NoPermit)
+LOOK_PERIOD = 0.2  # s between looks for the server of a goal that it has got: each goes through all ends of the graph
 
 LeafPeer = Peer[LeafNodeBase.Goal, LeafNodeBase.Result, LeafNodeBase.Feedback]
 LeafCall = Call[LeafNodeBase.Result, LeafNodeBase.Feedback]
@@ -76,6 +77,7 @@ class Machines:
         self._asked = 0
         self._ended_at: float | None = None  # monotonic time of the last success, until the next goal is accepted
         self._sent: dict[int, tuple[LeafPeer, LeafCall]] = {}  # by sending, those that are open
+        self._looked: dict[LeafPeer, float] = {}  # when a server was last seen to be there, monotonic
         record = identity.record
         self._doers: dict[type[f.Effect], Callable[[Any], None]] = {
             f.Send: self._send, f.Cancel: self._cancel, f.Lose: self._lose, f.StopMachine: self._stop,
@@ -96,7 +98,8 @@ class Machines:
         with self._lock:
             self._asked += 1
             number = self._asked
-            goal, effects = ask(self._goals, e.GoalAsked(number, key, self._seen(key), no_answer, away), monotonic())
+            seen = self._seen(key, sent=False)
+            goal, effects = ask(self._goals, e.GoalAsked(number, key, seen, no_answer, away), monotonic())
             self._do(effects)
         return SentGoal(goal, lambda: self._call(goal.call), lambda: self._happened(e.CancelAsked(number)))
 
@@ -104,7 +107,8 @@ class Machines:
         """Send waiting goals, and detect lost ones."""
         with self._lock:
             if self._goals.open:
-                self._happened(e.Looked({goal.asked.number: self._seen(goal.key) for goal in self._goals.open}))
+                seen = {goal.asked.number: self._seen(goal.key, sent=goal.call != 0) for goal in self._goals.open}
+                self._happened(e.Looked(seen))
 
     def settled(self) -> bool:
         """Whether every goal has ended and no machine is being stopped."""
@@ -117,17 +121,26 @@ class Machines:
         with self._lock:
             return [goal.name for goal in self._goals.open]
 
-    def _seen(self, key: e.Key) -> e.Seen:
-        """What is seen of the processes that a goal needs."""
+    def _seen(self, key: e.Key, sent: bool) -> e.Seen:
+        """What is seen of the processes that a goal needs; `sent`: its server has got it."""
         _, machine, subtask, _ = key
         hosts, gateways, processes = self._hosts, self._gateways, ("rc", "rp", subtask)
         below = [hosts.trouble(machine, process) for process in ("rc", "rp")]
         given_up = [hosts.fatal(machine, process) for process in processes]
         return e.Seen(
-            self.peer(machine, subtask).ready(), hosts.pid(machine, subtask), hosts.age(machine, subtask),
+            self._there(self.peer(machine, subtask), sent), hosts.pid(machine, subtask), hosts.age(machine, subtask),
             next(filter(None, below), None), hosts.trouble(machine, subtask), next(filter(None, given_up), None),
             gateways.obstacle(machine), gateways.latch(machine),
         )  # fmt: skip
+
+    def _there(self, peer: LeafPeer, sent: bool) -> bool:
+        """Whether a server is there; once it has got the goal, it is looked for less often, as a look is dear."""
+        now = monotonic()
+        if sent and now - self._looked.get(peer, 0.0) < LOOK_PERIOD:
+            return True
+        there = peer.ready()
+        self._looked[peer] = now if there else 0.0
+        return there
 
     # decisions
 
@@ -171,6 +184,7 @@ class Machines:
         call.end(Outcome.LOST)
         if effect.dead:
             peer.mark_lost()
+            self._looked.pop(peer, None)
 
     def _stop(self, effect: f.StopMachine) -> None:
         threading.Thread(target=self._stop_after_loss, args=(effect.machine, effect.cause), daemon=True).start()

@@ -34,7 +34,7 @@ from tms_ros.node import Ros
 from tms_schedulers.names import own as scheduler_of
 from tms_schedulers.names import schedulers
 
-SIZES = ((1, 1), (5, 1), (20, 1), (50, 1), (50, 2))  # machines, schedulers
+SIZES = ((1, 1), (5, 1), (20, 1), (20, 2), (50, 1))  # machines, schedulers
 RUNS = 20  # at most; a run moves a machine at least
 SERVICES: dict[str, object] = {"db": {}, "ts": {}}
 FIRST, SECOND = "cps", "east"  # PCs of a site of two schedulers

@@ -18,8 +18,9 @@ from tms_reason.wire import to_line
 from tms_ros.client import Call
 from tms_ros.goals import Outcome
 from tms_ros.reasons import LostMeanwhile
+from tms_ts import machines as module
 from tms_ts.gateways import Gateways
-from tms_ts.machines import Identity, Machines, _ended
+from tms_ts.machines import LOOK_PERIOD, Identity, Machines, _ended
 from words import words
 
 LOST = ProcessLost(LostMeanwhile("zx200:rp", "/zx200/tms_rp_zx200_change_pose"))
@@ -30,8 +31,10 @@ class Peer:
 
     def __init__(self, told: list[str]) -> None:
         self.told, self.calls, self.requests = told, list[Call](), list[Any]()
+        self.looks = 0
 
     def ready(self) -> bool:
+        self.looks += 1
         return True
 
     def send(self, request: Any, *, goal_id: bytes, on_change: Any) -> Call:
@@ -111,6 +114,27 @@ def test_a_cancel_goes_to_the_server_and_the_goal_is_open_until_it_has_ended(sit
     assert site.told[-1] == "cancelled" and site.machines.open_goals() == ["zx200:dig"]
     site.peer.calls[0].end(Outcome.CANCELED)
     assert site.machines.open_goals() == []
+
+
+def test_a_server_that_has_got_the_goal_is_looked_for_five_times_a_second(
+    site: Site, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    now = module.monotonic()
+    monkeypatch.setattr(module, "monotonic", lambda: now)
+
+    def looks(count: int) -> int:
+        before = site.peer.looks
+        for _ in range(count):
+            site.machines.advance()
+        return site.peer.looks - before
+
+    now += 1.0
+    assert looks(10) == 1
+    now += LOOK_PERIOD
+    assert looks(10) == 1
+    site.pid = 2  # the goal is lost, and waits to be sent again
+    site.machines.advance()
+    assert looks(10) == 10
 
 
 def test_the_sending_to_a_process_that_has_ended_is_lost_once(site: Site) -> None:
