@@ -74,11 +74,11 @@ def measure() -> Iterable[Figure]:
 def _bare(own: Rig) -> tuple[list[float], list[float]]:
     """Milliseconds of goals between two bare processes, and of chains; before and after, since a PC's speed drifts."""
     with own.beside("serve"):
-        goals = own.bare("act", "150")
+        goals = own.bare("act", "300")
         with ExitStack() as stack:
             for name, following in pairwise([*HOPS, ""]):
                 stack.enter_context(own.beside("link", name, following))
-            return goals, own.bare("chain", "50", HOPS[0], HOPS[-1])
+            return goals, own.bare("chain", "100", HOPS[0], HOPS[-1])
 
 
 def _prepare(own: Rig) -> None:
