@@ -170,6 +170,17 @@ class Mesh:
         clean = {key: value for key, value in os.environ.items() if key not in hidden}
         return {**clean, "TMS_SITE": str(self.site), "TMS_STATE": str(self.state), "COLUMNS": "200"}
 
+    def environment_of(self, pc: str) -> dict[str, str]:
+        """Of the processes of another PC of this site, which has a state folder of its own."""
+        from tms_config.config import load_site
+
+        other = {**self.env, "TMS_PC": pc, "TMS_STATE": str(self.state.with_name(pc))}
+        with pytest.MonkeyPatch.context() as patch:
+            patch.delenv("ROS_DOMAIN_ID", raising=False)  # the site's own counts
+            for key, value in other.items():
+                patch.setenv(key, value)
+            return {**other, **environment.environment(load_site())}
+
     def tms(self, *words: str, expect: int | None = 0, limit: float = 90) -> subprocess.CompletedProcess[str]:
         """Run the command line; the exit code must be `expect`."""
         done = programs.tms(words, self.env, limit)

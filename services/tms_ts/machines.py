@@ -184,7 +184,6 @@ class Machines:
         call.end(Outcome.LOST)
         if effect.dead:
             peer.mark_lost()
-            self._looked.pop(peer, None)
 
     def _stop(self, effect: f.StopMachine) -> None:
         threading.Thread(target=self._stop_after_loss, args=(effect.machine, effect.cause), daemon=True).start()

@@ -11,11 +11,10 @@ from tms_config.config import Site
 from tms_interfaces.generated import Reply, Req, ServiceType
 from tms_reason.errors import RosError, TmsError
 from tms_reason.names import check_sent
-from tms_ros.client import Call
 from tms_ros.node import Ros
 from tms_schedulers.asking import of_all, of_any, of_its_own
 from tms_schedulers.names import Scheduler, schedulers
-from tms_schedulers.sending import ExecutePeer, send
+from tms_schedulers.sending import ExecuteCall, ExecutePeer, send
 from tms_ur.answers import checked, error_in
 from tms_ur.reasons import RunNotBegun, StartRefused
 from tms_ur.start_models import ResumePlan
@@ -118,6 +117,6 @@ class RunCalls:
         return checked(self._ros.call(service_type, name, request, CALL_LIMIT))
 
 
-def _begun(call: Call[ExecuteTask.Result, ExecuteTask.Feedback]) -> bool:
+def _begun(call: ExecuteCall) -> bool:
     """Whether the run has begun; before that it only prepares and may be refused."""
     return call.feedback is not None and call.feedback.state != "preparing"

@@ -85,7 +85,7 @@ def _cost(size: int, count: int) -> Cost:
         pids = {"tms:ts": stack.enter_context(_processes(own, dict(os.environ), "tms:store", "tms:db", "tms:ts"))[-1]}
         if count > 1:
             second = f"tms:ts_{SECOND}"
-            pids[second] = stack.enter_context(_processes(own, own.environment_of(SECOND), second))[-1]
+            pids[second] = stack.enter_context(_processes(own, own.mesh.environment_of(SECOND), second))[-1]
         crowds = [
             stack.enter_context(_crowd(own, names[i], ",".join(SUBTASKS), *names[i : i + A_PROCESS]))
             for i in range(0, size, A_PROCESS)

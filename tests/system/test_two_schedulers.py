@@ -12,7 +12,6 @@ import programs
 from conftest import CLI, PROJECT, Mesh, claimed_domain, ports_of, site_data, wait_until
 from tms_config.config import load_site
 from tms_config.processes import find
-from tms_runtime import environment
 from tms_runtime.metrics import unready
 
 pytestmark = pytest.mark.turns
@@ -40,13 +39,8 @@ class Cps(Mesh):
         return {**super().env, "TMS_PC": "cps"}
 
     def start_east(self) -> None:
-        other = {**self.env, "TMS_PC": "east", "TMS_STATE": str(self.state.with_name("east"))}
-        with pytest.MonkeyPatch.context() as patch:
-            for key, value in other.items():
-                patch.setenv(key, value)
-            site = load_site()
-            own, row = {**other, **environment.environment(site)}, find(site, EAST)
-        self.east.append(programs.process(EAST, own, self.state.with_name("east.log")))
+        self.east.append(programs.process(EAST, self.environment_of("east"), self.state.with_name("east.log")))
+        row = find(load_site(str(self.site)), EAST)
         wait_until(lambda: unready(row) is None, 30, lambda: self.state.with_name("east.log").read_text())
 
     def kill_east(self) -> None:

@@ -13,7 +13,6 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import pytest
 import yaml
 
 from conftest import Mesh, claimed_domain, ports_of, site_data
@@ -51,13 +50,6 @@ class Rig:
                 yield process.pid, time.perf_counter() - begun
             finally:
                 process.kill()
-
-    def environment_of(self, pc: str) -> dict[str, str]:
-        """What the processes of another PC need, which has a state folder of its own."""
-        with pytest.MonkeyPatch.context() as patch:
-            patch.setenv("TMS_PC", pc)
-            patch.setenv("TMS_STATE", str(self.mesh.state.with_name(pc)))
-            return {**os.environ, **environment.environment(load_site())}
 
     @contextmanager
     def node(self) -> Iterator[Ros]:
