@@ -31,7 +31,7 @@ inline end_run(r) {
 
 inline take(m, r) {
 	if
-	:: uses(r, m) -> says[m] = r; silent[m] = 0; runs[m] = r; leaf[m] = NEXT
+	:: uses(r, m) -> says[m] = (whole(m) -> r : 0); silent[m] = 0; runs[m] = r; leaf[m] = NEXT
 	:: else
 	fi
 }
@@ -43,6 +43,15 @@ inline drop(m, r) {
 	fi
 }
 
+inline end_of_run(r) {
+	printf("run %d is over\n", r);
+	drop(0, r);
+	if
+	:: MACHINES > 1 -> drop(other, r)
+	:: else
+	fi
+}
+
 #ifdef HISTORY /* a press has arrived before the next run begins */
 #define free(m, r) (runs[m] == 0 && (!signal[m] || gateway[m] == FROZEN))
 #else
@@ -50,12 +59,14 @@ inline drop(m, r) {
 #endif
 #define finished(m, r) (runs[m] != (r) || leaf[m] == DONE)
 #define stands(m, r) (runs[m] != (r) || (leaf[m] == STOOD && (serves[m] == 0 || relay[m] != UP)))
+#define over(m) (runs[m] != 0 && ((finished(0, runs[m]) && finished(other, runs[m])) || (stands(0, runs[m]) && stands(other, runs[m]))))
+#define begins (whole(other) -> other : 0) /* the one process of a machine that begins runs */
 #define asks_for_stop(m) ((leaf[m] == ENDS || leaf[m] == AGAIN) && receipt[m] == 0)
 
 proctype Runs(byte m) { /* what the run of machine m does with it */
 	byte r;
 end:	do
-	:: atomic { m == other && scheduler == UP && last_run < RUNS && free(0, last_run + 1) && free(other, last_run + 1) &&
+	:: atomic { m == begins && scheduler == UP && last_run < RUNS && free(0, last_run + 1) && free(other, last_run + 1) &&
 		see(BEGINS, 0, last_run + 1) -> seen;
 		last_run++;
 		printf("run %d begins\n", last_run);
@@ -86,16 +97,8 @@ end:	do
 	:: atomic { scheduler == UP && cancels < CANCELS && runs[m] != 0 && leaf[m] != ENDS && leaf[m] != STOOD -> count(cancels);
 		printf("an operator cancels run %d\n", runs[m]);
 		r = runs[m]; end_run(r); r = 0 }
-	:: atomic { scheduler == UP && runs[m] != 0 && ((finished(0, runs[m]) && finished(other, runs[m])) || (stands(0, runs[m]) && stands(other, runs[m]))) &&
-		see(OVER, 0, runs[m]) -> seen;
-		r = runs[m];
-		printf("run %d is over\n", r);
-		drop(0, r);
-		if
-		:: MACHINES > 1 -> drop(other, r)
-		:: else
-		fi;
-		r = 0 }
+	:: atomic { scheduler == UP && over(m) && see(OVER, 0, runs[m]) -> seen;
+		r = runs[m]; end_of_run(r); r = 0 }
 	/* the relay */
 	:: atomic { relay[m] == UP && scheduler != FROZEN && serves[m] != 0 && (answer[m] != 0 || gateway[m] != UP || (waiting[m] != serves[m] && current[m] != serves[m])) ->
 		if

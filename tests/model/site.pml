@@ -1,5 +1,6 @@
 /* A site: machines, gateways, relays, a scheduler, a host agent, people. Its size is given by
-   MACHINES GATEWAYS RUNS TRIES (goals a run sends a machine, at most) GOALS (that it needs) FAULTS PRESSES ARMS_MOST CANCELS LONG. */
+   MACHINES GATEWAYS RUNS TRIES (goals a run sends a machine, at most) GOALS (that it needs) FAULTS PRESSES ARMS_MOST CANCELS LONG
+   SKETCHED (the machine that is only sketched; MACHINES: none). */
 
 #ifdef HISTORY
 c_decl { \#include "history.h" }
@@ -12,6 +13,7 @@ c_decl { \#include "history.h" }
 #include "scheduler.pml"
 #include "host.pml"
 #include "trouble.pml"
+#include "sketch.pml"
 #include "promises.pml"
 
 init {
@@ -25,7 +27,10 @@ init {
 		do
 		:: n < MACHINES ->
 			note_armed[n] = 1;
-			run Machine(n); run Gateway(n); run Runs(n); run Host(n); run Trouble(n);
+			if
+			:: n == SKETCHED -> run Sketch(n)
+			:: else -> run Machine(n); run Gateway(n); run Runs(n); run Host(n); run Trouble(n)
+			fi;
 			n++
 		:: else -> break
 		od;

@@ -7,10 +7,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 SITE = Path(__file__).with_name("site.pml")
-MEMORY = 7000  # MiB that the verifier may use
+MEMORY = 3900  # MiB that a verifier may use; two of them go on at once
 DEPTH = 1_000_000  # steps of the longest history
 TABLE = 24  # 2^24 slots of the table of states at first
-SIZES = ("MACHINES", "GATEWAYS", "RUNS", "TRIES", "GOALS", "FAULTS", "PRESSES", "ARMS_MOST", "CANCELS", "LONG")
+SIZES = (
+    "MACHINES", "GATEWAYS", "RUNS", "TRIES", "GOALS", "FAULTS", "PRESSES", "ARMS_MOST", "CANCELS", "LONG", "SKETCHED",
+)  # fmt: skip
 INCOMPLETE = ("Search not completed", "max search depth too small", "out of memory", "search incomplete")
 
 

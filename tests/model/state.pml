@@ -5,6 +5,7 @@
 #define run_of(k) (((k) + TRIES - 1) / TRIES)
 #define uses(r, m) ((r) % 2 == 1 || (m) == MACHINES - 1) /* every second run uses one machine only */
 #define other (MACHINES - 1)
+#define whole(m) ((m) != SKETCHED)
 
 /* processes */
 byte gateway[GATEWAYS], relay[MACHINES], scheduler, host;

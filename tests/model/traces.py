@@ -11,7 +11,7 @@ from simulation import plan as p
 from simulation.plan import Planned
 from simulation.world import Happened
 
-SIZES = (1, 1, 20, 12, 1, 255, 255, 255, 255, 0)  # nothing is bounded but the runs, and the goals of a run
+SIZES = (1, 1, 20, 12, 1, 255, 255, 255, 255, 0, 1)  # nothing is bounded but the runs, and the goals of a run
 READER = Check("history", "one machine, whatever happens", SIZES)
 KNOWN = (p.Kill, p.Freeze, p.Press, p.Rearm, p.Cancel, p.Trapped)  # the model has no liars, strangers, second runs
 OWNER = re.compile(r"is asked for goal (\d+) of Owner\(run=(\d+)")

@@ -66,13 +66,13 @@ end:	do
 	:: atomic { host == DOWN && see(STARTED_HOST, 0, 0) -> seen; printf("the host agent starts\n"); host = UP }
 	:: atomic { presses < PRESSES && see(PRESSED, 0, 0) -> seen; count(presses);
 		printf("a person presses stop\n");
-		signal[0] = (gateway[0] != DOWN); signal[GATEWAYS - 1] = (gateway[GATEWAYS - 1] != DOWN);
+		signal[0] = (whole(0) && gateway[0] != DOWN); signal[GATEWAYS - 1] = (whole(machine_of(GATEWAYS - 1)) && gateway[GATEWAYS - 1] != DOWN);
 		if
-		:: MACHINES > 1 -> signal[other] = (gateway[other] != DOWN)
+		:: MACHINES > 1 -> signal[other] = (whole(other) && gateway[other] != DOWN)
 		:: else
 		fi;
 		hears_press = (scheduler != DOWN);
-		host_press[0] = (host != DOWN); host_press[other] = (host != DOWN);
+		host_press[0] = (whole(0) && host != DOWN); host_press[other] = (whole(other) && host != DOWN);
 		heard[0] = (host == UP); heard[other] = (host == UP) }
 	:: atomic { hears_press && scheduler == UP && ended(0) && ended(other) -> hears_press = 0 }
 	od
