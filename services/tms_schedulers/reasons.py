@@ -1,7 +1,8 @@
 """Why a scheduler does not get a machine, and which one takes a task."""
 
+from tms_reason.quantities import Seconds
 from tms_reason.reason import Reason
-from tms_reason.remedies import PROCESSES, RETRY, RUNS
+from tms_reason.remedies import LOGS, PROCESSES, RETRY, RUNS
 
 
 # fmt: off
@@ -12,5 +13,6 @@ class RunOutdated(Reason, text="{machine} has had a newer run, {run}: start the 
 class LeasesUnread(Reason, text="which run has which machine was not read from the database yet", action=PROCESSES):
     pass
 class LeasesUnreadable(Reason, text="the leases of machines in the database cannot be read", action=PROCESSES): pass
+class RunNotBegun(Reason, text="the run did not begin within {limit}", action=LOGS): limit: Seconds; process: str
 class OtherScheduler(Reason, text="{scheduler} runs tasks of {machines}: send it there", code="OTHER_SCHEDULER"):
     scheduler: str; machines: tuple[str, ...]

@@ -58,7 +58,6 @@ class JournalCut(Reason, text="cut after {count} events",
     details="the rest is at /api/runs/{run}/events?after={last}"): count: int; run: str; last: int
 class TooManyConsoles(Reason, text="{most} consoles are connected already: close one of them"): most: int
 class Starting(Reason, text="task {task} is being started already"): task: int
-class RunNotBegun(Reason, text="the run did not begin within {limit}", action=LOGS): limit: Seconds; process: str
 class CyclesNotRead(Reason, text="a cycle of work cannot be read: {why}"): why: Reason
 class GroundNotRead(Reason, text="the ground of {time} cannot be read ({problem})"):
     time: str; problem: str

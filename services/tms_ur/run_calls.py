@@ -14,9 +14,10 @@ from tms_reason.names import check_sent
 from tms_ros.node import Ros
 from tms_schedulers.asking import of_all, of_any, of_its_own
 from tms_schedulers.names import Scheduler, schedulers
+from tms_schedulers.reasons import RunNotBegun
 from tms_schedulers.sending import ExecuteCall, ExecutePeer, send
 from tms_ur.answers import checked, error_in
-from tms_ur.reasons import RunNotBegun, StartRefused
+from tms_ur.reasons import StartRefused
 from tms_ur.start_models import ResumePlan
 
 SCHEDULER = "tms:ts"

@@ -28,7 +28,6 @@ if TYPE_CHECKING:
     from tms_ros.node import Ros
     from tms_ts.bt import Templates
 
-SERVER_LIMIT = 5.0  # s
 CHECK_PERIOD = 0.1  # s between checks
 SILENT = 10.0  # s without a message of the scheduler, which publishes its runs twice a second
 FORGOTTEN = 5.0  # s of lists without this run, after which another scheduler process must have begun it
@@ -81,9 +80,10 @@ class Runner:
     def _send(self, scheduler: Scheduler) -> None:
         from tms_msg_ts.action import ExecuteTask
 
+        from tms_schedulers.sending import send
+
         self._peer = self._node.peer(ExecuteTask, scheduler.named("execute_task"))
-        self._peer.wait_ready(SERVER_LIMIT)
-        self._call = self._peer.send(self._goal, on_feedback=self._feedback.put)
+        self._call = send(self._peer, self._goal, self._feedback.put)
         self._received_at = self._listed_at = monotonic()
 
     def begin(self) -> End:

@@ -23,6 +23,7 @@ from tms_reason.errors import TmsError
 from tms_ros.client import Call
 from tms_ros.node import Ros
 from tms_schedulers.names import responsible
+from tms_schedulers.sending import send
 from tms_ts.reasons import StateBecause
 
 ARM_LIMIT = 30.0  # s for the machine to be armed again
@@ -74,7 +75,7 @@ class Work:
         self._peer.wait_ready(SERVER_LIMIT)
         self._run, self.lost, self.untold = "", False, False
         goal = ExecuteTask.Goal(task_id=self._task, ignore_warnings=True)
-        self._call = self._peer.send(goal, on_feedback=self._received)
+        self._call = send(self._peer, goal, self._received)
 
     def cancel(self) -> None:
         """Cancel the run; returns at once."""
