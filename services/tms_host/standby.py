@@ -8,6 +8,7 @@ The sign of a working gateway is its pulse, the lease of its permit, not its pro
     Most gateways are back before that. An idle machine that stands only gets cancel and zero: a person may be at its
     levers, and a crash of software that does not move the machine must not take it from that person;
   - a gateway that ends in order (`tms restart`, `tms down`) has stopped the machine: cancel and zero again, no alarm.
+    For some seconds after another loss this cannot be told from a loss, and counts as one.
 
   A press of the stop button that a gateway did not live to remember is handed on to its successor as a request; it is
   noted on the disk, too, should this process not live to do that.

@@ -47,9 +47,12 @@ def test_what_it_tells_arrives(site: OperaSim) -> None:
 def test_its_place_is_known_without_frames(site: OperaSim) -> None:
     places = Places(site.ros, {MACHINE: site.border})
     site.until(lambda: places.take() == {MACHINE}, "its place")
-    place, true = places.place(MACHINE), site.truth()
-    assert place is not None
-    assert place[:3] == pytest.approx((*true["place"][:2], true["yaw"]), abs=1e-5)
+
+    def known() -> bool:
+        place, true = places.place(MACHINE), site.truth()
+        return place is not None and place[:3] == pytest.approx((*true["place"][:2], true["yaw"]), abs=1e-5)
+
+    site.until(known, "where it really is, once it stands")
 
 
 def test_front_cmd_moves_the_arm(site: OperaSim) -> None:

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 from com3_msgs.action import SetDumpAngle, SetSwingAngle
@@ -78,15 +79,18 @@ def test_it_computes_a_path_and_drives_along_it(machine: Rig) -> None:
 
 def test_it_drives_to_a_pose_and_through_poses(machine: Rig) -> None:
     assert machine.end(machine.send(NavigateToPose, "navigate_to_pose", pose=pose(14, 8, 0.5))) is Outcome.SUCCEEDED
-    machine.until(lambda: bool(machine.plans), "its way")
-    end = machine.plans[-1].poses[-1].pose.position
-    assert (end.x, end.y) == (14.0, 8.0)
+    machine.until(lambda: any(_end(plan) == (14.0, 8.0) for plan in machine.plans), "its way")
     distances = [one.distance_remaining for one in machine.said]
     assert len(distances) > 3 and distances[0] > distances[-1]
     machine.until(lambda: math.dist(machine.place(), (14, 8)) < 0.2, "a frame at the goal")
     through = machine.send(NavigateThroughPoses, "navigate_through_poses", poses=[pose(12, 8), pose(10, 7), pose(8, 7)])
     assert machine.end(through) is Outcome.SUCCEEDED
     assert {one.number_of_poses_remaining for one in machine.said[len(distances) :]} >= {1, 2}
+
+
+def _end(plan: Any) -> tuple[float, float]:
+    last = plan.poses[-1].pose.position
+    return last.x, last.y
 
 
 def test_a_cancel_ends_with_the_machine_standing(machine: Rig) -> None:

@@ -37,6 +37,7 @@ STOPPED = (
 )  # by emg_stop, where a busy PC carries the request to cancel later
 SHORT, MOST = 0.4, 0.45  # s; a test that does not run itself freezes for longer than it wants
 ATTEMPTS = 5
+DROPPED = 8.0  # s after which discovery counts a killed process no more
 
 
 class Small:
@@ -115,6 +116,11 @@ class Small:
         yield call, self.statuses[(set(self.statuses) - known).pop()]
 
 
+def age(pid: int) -> float:
+    """How long a process is there [s]."""
+    return time.time() - psutil.Process(pid).create_time()
+
+
 def _duration(seconds: float) -> Duration:
     return Duration(sec=int(seconds), nanosec=int(seconds % 1 * 1e9))
 
@@ -152,7 +158,7 @@ def test_a_press_while_the_gateway_is_away_latches_its_successor(small: Small) -
 
 def test_a_frozen_gateway_is_stood_in_for_and_replaced(small: Small, capsys: pytest.CaptureFixture[str]) -> None:
     with small.moving(20.0) as (_, statuses):
-        wait_until(lambda: time.time() - psutil.Process(small.pid()).create_time() > 5.0, 30, "it is no new one")
+        wait_until(lambda: age(small.pid()) > 5.0, 30, "it is no new one")
         begin, pid, before = len(small.log()), small.pid(), small.emergencies
         at = time.monotonic()
         os.kill(pid, signal.SIGSTOP)
@@ -215,6 +221,7 @@ def test_an_idle_machine_whose_gateway_is_frozen_gets_no_emg_stop(small: Small) 
 
 def test_a_restart_by_hand_is_no_loss(small: Small) -> None:
     small.wait_armed()
+    wait_until(lambda: age(small.pid()) > DROPPED, 30, "its predecessor is forgotten, if that was killed")
     begin, old = len(small.log()), small.pid()
     small.mesh.tms("restart", "zx200:rc")
     wait_until(lambda: small.reported("gateway_left", begin), 30, "the host agent has seen it leave")
