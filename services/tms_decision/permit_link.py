@@ -15,7 +15,7 @@ class PermitLink:
     goal: bytes = NOBODY
     holder: str = ""
     stale_writers: int = 0  # predecessors that discovery has not dropped yet, or the process itself while it is frozen
-    left: bool = False  # the last one ended in order: a killed one leaves a stale writer
+    left: bool = False  # ended in order; not while a stale writer is there: its end may hide a loss in the same report
     received: float = float("-inf")
     asserts: bool = False
     asserted: int = 0  # writers that are asserted now
@@ -33,7 +33,6 @@ class PermitLink:
     def reported(self, alive: int, not_alive: int, late: bool, now: float) -> None:
         """Take a report of DDS: how many writers are asserted, and are not; `late`: this PC did not run just now."""
         if alive > 0 or self.asserted > 0:
-            # With a stale writer there, it may as well be killed: one report tells of that and of the end of another.
             self.left = alive == not_alive == 0
         self.asserted, self.stale_writers = alive, not_alive
         if alive > 0:
