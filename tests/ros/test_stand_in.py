@@ -77,7 +77,13 @@ class Small:
 
     def wait(self, holds: Any, what: str) -> None:
         with self.changed:
-            assert self.changed.wait_for(holds, 60), f"not within 60 s: {what}"
+            assert self.changed.wait_for(holds, 60), f"not within 60 s: {what}\n{self.told()}"
+
+    def told(self) -> str:
+        """What was heard of the machine, and the last lines that its processes have logged."""
+        logs = sorted((self.mesh.state / "log").glob("*.log"))
+        lines = [f"{log.name}: {line}" for log in logs for line in log.read_text().splitlines()[-30:]]
+        return "\n".join([f"{self.state}", f"{list(self.statuses.values())}", *lines])
 
     def pid(self) -> int:
         return self._supervisor.process("zx200:rc").pid
