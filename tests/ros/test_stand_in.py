@@ -51,7 +51,7 @@ class Small:
         self.changed = threading.Condition()
         self.peer = ros.peer(FollowJointTrajectory, "/zx200/rc/follow_joint_trajectory")
         status = "/zx200/upper_arm_controller/follow_joint_trajectory/_action/status"
-        ros.subscribe(GoalStatusArray, status, self._status, depth=20)
+        ros.subscribe(GoalStatusArray, status, self._status, depth=20, latched=True)  # as actions offer it
         ros.subscribe(MachineState, "/zx200/rc/state", self._state, latched=True)
         ros.subscribe(Bool, "/zx200/emg_stop", self._emergency, depth=20)
         self.release = ros.publisher(Bool, "/zx200/emg_stop")
