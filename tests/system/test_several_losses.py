@@ -42,7 +42,7 @@ class Controller:
         self.emergency = False
         self.pids: list[int] = []  # of the mesh
         self._ends = [
-            ros.subscribe(GoalStatusArray, STATUS, self._status, depth=20),
+            ros.subscribe(GoalStatusArray, STATUS, self._status, depth=20, latched=True),  # as actions offer it
             ros.subscribe(Bool, "/zx200/emg_stop", self._emergency, depth=20),
         ]
         self._ros = ros
