@@ -25,20 +25,25 @@ def send(
 
     Raises:
         RosError: NO_SERVER; or it took the goal too late, and was asked to end it.
+        KeyboardInterrupt: the goal was asked to end, too.
     """
-    call = _sent(scheduler, goal, on_feedback)
-    if not call.wait_for(lambda: call.accepted or call.outcome is not None, DISCOVERY_LEASE):
+
+    def sent() -> ExecuteCall:
+        scheduler.wait_ready(LIMIT)
+        return scheduler.send(goal, on_feedback=on_feedback)
+
+    call = sent()
+    try:
+        answered = call.wait_for(lambda: call.accepted or call.outcome is not None, DISCOVERY_LEASE)
+    except KeyboardInterrupt:  # of `tms run`, which would end before its cancel has left
+        scheduler.cancel(call)
+        call.wait_for(lambda: call.outcome is not None, LIMIT)
+        raise
+    if not answered:
         scheduler.resolve_unanswered(call)
         call.wait_for(lambda: call.outcome is not None, LIMIT)
         if call.outcome is Outcome.LOST:
-            return _sent(scheduler, goal, on_feedback)
-        if call.outcome is not None:
+            return sent()
+        if call.outcome is Outcome.CANCELED:
             raise RosError(RunNotBegun(DISCOVERY_LEASE, process_of(scheduler.name)))
     return call
-
-
-def _sent(
-    scheduler: ExecutePeer, goal: ExecuteTask.Goal, on_feedback: Callable[[ExecuteTask.Feedback], None] | None
-) -> ExecuteCall:
-    scheduler.wait_ready(LIMIT)
-    return scheduler.send(goal, on_feedback=on_feedback)

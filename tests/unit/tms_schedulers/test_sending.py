@@ -37,8 +37,13 @@ class Scheduler:
         self.calls.append(call)
         return call
 
+    def cancel(self, call: Call[Any, Any]) -> None:
+        call.end(Outcome.CANCELED)
+
     def resolve_unanswered(self, call: Call[Any, Any]) -> None:
-        known = {"does not know it": Outcome.LOST, "had taken it": Outcome.CANCELED}
+        known = {
+            "does not know it": Outcome.LOST, "had taken it": Outcome.CANCELED, "had refused it": Outcome.ABORTED,
+        }  # fmt: skip
         if (outcome := known.get(self._answers[len(self.calls) - 1])) is not None:
             call.end(outcome)
 
@@ -54,6 +59,7 @@ def hurry(monkeypatch: pytest.MonkeyPatch) -> None:
         (["accepts"], None),
         (["rejects"], Outcome.REJECTED),
         (["does not know it", "accepts"], None),
+        (["had refused it"], Outcome.ABORTED),
         (["says nothing"], None),
     ],
 )
@@ -75,3 +81,19 @@ def test_a_run_that_its_scheduler_has_taken_too_late_is_ended_and_not_taken_for_
     with pytest.raises(RosError) as error:
         sending.send(scheduler, GOAL, FEEDBACK)
     assert error.value.reason == RunNotBegun(0.01, "tms:ts")
+
+
+def test_ctrl_c_before_the_answer_cancels_the_goal(monkeypatch: pytest.MonkeyPatch) -> None:
+    waits: list[float] = []
+
+    def interrupted(call: Call[Any, Any], holds: Any, seconds: float) -> bool:
+        waits.append(seconds)
+        if len(waits) == 1:
+            raise KeyboardInterrupt
+        return bool(holds())
+
+    monkeypatch.setattr(Call, "wait_for", interrupted)
+    scheduler: Any = Scheduler("says nothing")
+    with pytest.raises(KeyboardInterrupt):
+        sending.send(scheduler, GOAL, FEEDBACK)
+    assert scheduler.calls[0].outcome is Outcome.CANCELED and waits == [sending.DISCOVERY_LEASE, sending.LIMIT]
