@@ -116,7 +116,7 @@ def test_two_trucks_take_turns_on_a_road(mesh: Mesh) -> None:
             one.start()
         for one in threads:
             one.join()
-        assert [one.returncode for one in ends] == [0, 0], [one.stdout + one.stderr for one in ends]
+        assert [one.returncode for one in ends] == [0, 0], "\n".join(one.stdout + one.stderr for one in ends)
         assert not watch.both and watch.looks > 50
         assert set(watch.holders) == set(LANES) and len(watch.holders) > 2, "they took turns"
         wait_until(lambda: bool(watch.road) and watch.road[0].state == Place.FREE, 20, "the road is free again")

@@ -131,6 +131,6 @@ def _report(figures: dict[str, Any], rows: list[Row], site: Site, report: Path |
     if as_json:
         session.show_json(figures)
     else:
-        click.echo(text(figures))
+        click.echo(text(figures, rows))
     if report is not None:
         report.write_text(markdown(rows, figures, site.name), encoding="utf-8")

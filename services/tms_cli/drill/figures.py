@@ -19,7 +19,6 @@ def percentile(values: Sequence[float], share: float) -> float | None:
 def summary(rows: Sequence[Row], seed: int) -> dict[str, Any]:
     """The document of --json."""
     tried = [row for row in rows if row.outcome != LEFT_OUT and not row.void]
-    left_out = [row for row in rows if row.outcome == LEFT_OUT]
     reported = [row.reported_s for row in tried if row.reported_s is not None]
     stood = [row.stood_s for row in tried if row.stood_s is not None and measured(row)]
     backs = [row.back_s for row in tried if row.back_s is not None]
@@ -27,16 +26,10 @@ def summary(rows: Sequence[Row], seed: int) -> dict[str, Any]:
         "seed": seed,
         "trials": len(tried),
         "kills": sum(row.how in (How.KILL.value, How.POWER.value) for row in tried),
-        "left_out": len(left_out),
         "void": sum(bool(row.void) for row in rows),
-        "false_receipts": sum(bool(row.false_receipt) for row in tried),
+        **{name: sum(name in wrong(row) for row in rows) for name in BAD},
         "unconfirmed": sum(row.unconfirmed for row in tried),
         "unconfirmed_in_order": sum(row.unconfirmed and row.fault == NONE and _single(row) for row in tried),
-        "unlatched": sum(row.unlatched for row in tried),
-        "hung": sum(row.outcome == HUNG for row in tried),
-        "ran_on": sum(row.ran_on for row in tried),
-        "disturbed": sum(row.disturbed for row in tried),
-        "not_back": sum(row.back_s is None for row in tried),
         "stop_p50_s": _rounded(percentile(stood, 0.5)),
         "stop_p99_s": _rounded(percentile(stood, 0.99)),
         "kill_to_stop_p50_s": _rounded(percentile(reported, 0.5)),
@@ -46,6 +39,19 @@ def summary(rows: Sequence[Row], seed: int) -> dict[str, Any]:
         "stops": stops(tried),
         "rows": [row.as_dict() for row in rows],
     }
+
+
+def wrong(row: Row) -> list[str]:
+    """The figures of BAD in which a trial counts."""
+    if row.void:
+        return []
+    if row.outcome == LEFT_OUT:
+        return ["left_out"]
+    holds = {
+        "false_receipts": bool(row.false_receipt), "hung": row.outcome == HUNG, "ran_on": row.ran_on,
+        "unlatched": row.unlatched, "disturbed": row.disturbed, "not_back": row.back_s is None,
+    }  # fmt: skip
+    return [name for name in BAD if holds.get(name)]
 
 
 def measured(row: Row) -> bool:

@@ -4,7 +4,8 @@ from collections.abc import Sequence
 from datetime import datetime, timezone
 from typing import Any
 
-from tms_cli.drill.verdict import Row
+from tms_cli.drill.figures import wrong
+from tms_cli.drill.verdict import LEFT_OUT, Row
 
 FACTS = (
     ("trials", "Trials", "試行回数"),
@@ -39,24 +40,26 @@ def line(row: Row) -> str:
         return f"{row.machine}: {row.stop}, {row.fault}: proves nothing: {row.void}"
     seen = "confirmed" if row.confirmed else ", ".join(verdicts)
     what = ", ".join(dict.fromkeys([*filter(None, [seen]), *verdicts])) or row.outcome
-    reported = (
-        f"; hit at {datetime.fromtimestamp(row.at, timezone.utc):%H:%M:%S.%f}: {'; '.join(row.receipts)}"
-        if verdicts
-        else ""
-    )
+    told = "; ".join([*row.receipts, *filter(None, [row.last_state])])
+    reported = f"; hit at {datetime.fromtimestamp(row.at, timezone.utc):%H:%M:%S.%f}: {told}" if verdicts else ""
     return (
         f"{row.machine}: {row.stop}, {row.fault}: {what}; stood after {_text(row.stood_s)} s, "
         f"{row.travel_rad:.3f} rad, {row.travel_m:.2f} m; {row.outcome}{reported}"
     )
 
 
-def text(figures: dict[str, Any]) -> str:
-    """The figures for a terminal."""
+def text(figures: dict[str, Any], rows: Sequence[Row]) -> str:
+    """The figures for a terminal, and last, where it is found, what must not be."""
     facts = [f"{figures_name(name)}: {_text(figures[name])}" for name, _, _ in FACTS]
-    rows = [STOPS, *([_text(one[name]) for name in STOPS] for one in figures["stops"])]
-    widths = [max(len(row[column]) for row in rows) for column in range(len(STOPS))]
-    table = ["  ".join(word.ljust(width) for word, width in zip(row, widths, strict=True)).rstrip() for row in rows]
-    return "\n".join([*table, "", *facts])
+    cells = [STOPS, *([_text(one[name]) for name in STOPS] for one in figures["stops"])]
+    widths = [max(len(row[column]) for row in cells) for column in range(len(STOPS))]
+    table = ["  ".join(word.ljust(width) for word, width in zip(row, widths, strict=True)).rstrip() for row in cells]
+    found = [
+        f"WRONG: {', '.join(map(figures_name, wrong(row)))}: {line(row)}"
+        for row in rows
+        if wrong(row) and row.outcome != LEFT_OUT
+    ]
+    return "\n".join([*table, "", *facts, *found])
 
 
 def figures_name(key: str) -> str:

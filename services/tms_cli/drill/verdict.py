@@ -77,6 +77,7 @@ class Row:
     unlatched: bool = False
     ran_on: bool = False
     false_receipt: str = ""  # why a receipt is false
+    last_state: str = ""  # of an unlatched machine, as its gateway told it
     receipts: list[str] = field(default_factory=list)
 
     def as_dict(self) -> dict[str, Any]:
@@ -109,6 +110,7 @@ def judge(facts: TrialFacts) -> Row:
     row.confirmed = bool(record.receipts) and all(one.confirmed for one in record.receipts)
     row.unconfirmed = not row.confirmed
     row.unlatched = (row.unconfirmed or stop.latches) and not row.latched
+    row.last_state = _last_state(facts) if row.unlatched else ""
     row.disturbed = not stop.moves and facts.trial.fault == NONE and any(r.begun < facts.stop for r in record.receipts)
     if row.disturbed and facts.busy:
         row.void, row.disturbed = facts.busy, False
@@ -208,6 +210,14 @@ def _measure(row: Row, facts: TrialFacts) -> None:
     row.travel_rad = ways.get(row.travel_joint, 0.0)
     (x, y), (x0, y0) = end.place, truth[0].place
     row.travel_m = ((x - x0) ** 2 + (y - y0) ** 2) ** 0.5
+
+
+def _last_state(facts: TrialFacts) -> str:
+    """What the gateway told last, and when."""
+    if not facts.record.states:
+        return "its gateway told no state"
+    last = facts.record.states[-1]
+    return f"its last state came {last.at - facts.hit:+.2f} s from the hit: {english(last.hold) or 'nothing holds it'}"
 
 
 def text_of(receipt: Receipt, hit: float) -> str:

@@ -165,8 +165,11 @@ def test_what_is_told_of_it() -> None:
     found = summary(rows, 7)
     page = markdown(rows, found, "drill")
     assert "停止訓練" in page and "| zx200 | kill rc | none | 0.500 | 2.000 |" in page and "(a/b)" in page
-    assert "Confirmed, and truly moving: 1" in text(found)
+    told = text(found, rows)
+    assert "Confirmed, and truly moving: 1" in told
     assert "FALSE RECEIPT: moved 0.10 s after" in line(rows[1])
+    last = told.splitlines()[-1]
+    assert last.startswith("WRONG: Confirmed, and truly moving: zx200: kill rc, none") and told.count("WRONG") == 1
 
 
 @pytest.fixture

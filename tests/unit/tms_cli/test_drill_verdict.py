@@ -163,6 +163,7 @@ def test_what_is_not_confirmed_must_be_latched() -> None:
     motion = truth((0.0, 2.0))
     assert wrong(judge(facts(motion, receipt(confirmed=False)))) == {"unconfirmed", "unlatched"}
     assert wrong(judge(facts(motion))) == {"unconfirmed", "unlatched"}  # no receipt at all
+    assert judge(facts(motion)).last_state == "its last state came +3.00 s from the hit: nothing holds it"
     latching = StopScenario(How.KILL, (TS,), shared=True, latches=True)
     assert wrong(judge(facts(motion, receipt(), stop_kind=latching))) == {"unlatched"}
     assert wrong(judge(facts(motion, receipt(), stop_kind=latching, latch="tms:ts was lost"))) == set()
