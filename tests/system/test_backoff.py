@@ -24,7 +24,6 @@ TRIES = "50"  # so many that it is between two of them all through the test
 def site(tmp_path: Path) -> Iterator[Site]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("TMS_STATE", str(tmp_path / "state"))
-        patch.setenv("XDG_RUNTIME_DIR", str(tmp_path))
         patch.delenv("ROS_DOMAIN_ID", raising=False)
         file = tmp_path / "site.yaml"
         file.write_text(yaml.safe_dump(site_data(51, 21000, services={"db": {}}, machines={})))
