@@ -7,7 +7,7 @@ from nav_msgs.msg import Path
 
 from tms_machine.border import PLAN
 from tms_ros.node import Ros
-from tms_sim.base import Base
+from tms_sim.base import Base, Leg
 from tms_sim.path_server import in_map
 
 EVERY = 25  # ticks, a second
@@ -18,11 +18,14 @@ class WayTeller:
 
     def __init__(self, ros: Ros, machine: str, base: Base) -> None:
         self._plans, self._base = ros.publisher(Path, f"/{machine}/{PLAN}", 1), base
+        self._end: Leg | None = None
 
     def tell(self, tick: int) -> None:
-        """Tell it once a second while there is one."""
+        """Tell it when it begins, and once a second while there is one."""
         legs = list(self._base.legs)
-        if tick % EVERY == 0 and legs:
+        end = legs[-1] if legs else None
+        begins, self._end = end != self._end, end
+        if legs and (begins or tick % EVERY == 0):
             places = [(self._base.x, self._base.y), *((leg.x, leg.y) for leg in legs)]
             self._plans.publish(along([place for place in places if all(map(math.isfinite, place))]))
 

@@ -88,6 +88,13 @@ def test_it_drives_to_a_pose_and_through_poses(machine: Rig) -> None:
     assert {one.number_of_poses_remaining for one in machine.said[len(distances) :]} >= {1, 2}
 
 
+def test_it_tells_a_way_that_takes_less_than_a_second(machine: Rig) -> None:
+    x, y = machine.place()
+    end = round(x + 0.5, 3), round(y, 3)
+    assert machine.end(machine.send(NavigateToPose, "navigate_to_pose", pose=pose(*end))) is Outcome.SUCCEEDED
+    machine.until(lambda: any(_end(plan) == end for plan in machine.plans), "its way")
+
+
 def _end(plan: Any) -> tuple[float, float]:
     last = plan.poses[-1].pose.position
     return last.x, last.y
