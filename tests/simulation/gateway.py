@@ -297,7 +297,8 @@ class GatewayProcess(PermitProcess):
         plant, (since, until) = self.unit.machine.plant, self.unit.levers
         began = self.world.now - plant.turned < UNSEEN  # a person, just now
         person = self.unit.driven or since <= self.world.now < until
-        hidden = plant.fault.replay and person  # its past does not tell of that person
+        replays = plant.fault.replay or self.world.now - self.unit.replayed_at < UNSEEN
+        hidden = replays and person  # its past does not tell of that person
         if receipt.confirmed and plant.moves() and not began and not hidden:
             raise Violation(f"confirmed and truly moving: {receipt.cause!r}")
         if not receipt.confirmed and self.core is not None and self.core.latch.cause is None:

@@ -206,6 +206,8 @@ class Site:
         """A machine becomes unkind, or kind again."""
         self.world.tell(unit.name, f"is now {fault}")
         unit.lies_since = self.world.now if fault != unit.machine.plant.fault else unit.lies_since
+        if unit.machine.plant.fault.replay and not fault.replay:
+            unit.replayed_at = self.world.now
         unit.machine.plant.fault = fault
 
 

@@ -84,6 +84,11 @@ def test_a_press_that_a_second_gateway_took_along_is_handed_on(monkeypatch: pyte
     assert "before a re-arm" in Schedule(557426936, found).run().violation
 
 
+def test_who_has_seen_a_machines_past_only_cannot_know_of_its_levers() -> None:
+    """The machine ended to replay its record 5 ms before the receipt: no sample of its present had come yet."""
+    assert Schedule(20615519).run().violation == ""
+
+
 @pytest.mark.parametrize("seed", [31292, 16912990, 2912419538, 1277639756])
 def test_a_motion_that_no_source_has_shown_is_waited_for(seed: int) -> None:
     """A stranger cancelled it, and the machine went on and replayed its record of before, in which it stood.

@@ -71,6 +71,7 @@ class Unit:
         self.latched_since = 0.0
         self.by_hand_at = float("-inf")  # when a person last had it
         self.lies_since = 0.0  # when it last became unkind, or kind again
+        self.replayed_at = float("-inf")  # when it last ended to tell its past for its present
         self.levers = 0.0, 0.0  # when somebody moves it by its levers without a word, from and to
         self.receipts: list[f.Receipt] = []
         self.trap = Trap()
