@@ -184,7 +184,7 @@ class GatewayProcess(PermitProcess):
         life = self.life
         if any(isinstance(effect, f.Rearmed) and effect.armed for effect in effects):
             self.latched = self.notes.latch_told = False
-            self.unit.missed = float("inf")
+            self.unit.missed, self.unit.orphan = float("inf"), None
             if not (self.notes.armed or self.notes.pressed):
                 raise Violation(f"{self.name} is armed, and the disk does not say so")
         for effect in effects:
@@ -277,6 +277,8 @@ class GatewayProcess(PermitProcess):
         order.end(end.outcome, end.why)
 
     def _answer(self, request: int, effect: f.Effect) -> None:
+        if isinstance(effect, f.Stopped):
+            self._check_latch(effect.receipt)
         _, answer = self.calls.pop(request)
         self.notes.rearming = self.notes.rearming and not isinstance(effect, f.Rearmed)
         self.world.send(f"{self.name} results", lambda: answer(effect))
@@ -301,5 +303,8 @@ class GatewayProcess(PermitProcess):
         hidden = replays and person  # its past does not tell of that person
         if receipt.confirmed and plant.moves() and not began and not hidden:
             raise Violation(f"confirmed and truly moving: {receipt.cause!r}")
+        self._check_latch(receipt)
+
+    def _check_latch(self, receipt: f.Receipt) -> None:
         if not receipt.confirmed and self.core is not None and self.core.latch.cause is None:
             raise Violation(f"{self.name} is not latched after a stop that is not confirmed: {receipt.cause!r}")

@@ -13,6 +13,7 @@ FOUND = 3.0  # s for processes to find each other, on a busy PC
 NOTICED = 3.0  # s until a machine that lies must have been told to stop
 GIVEN_UP = 6.0  # s until a run must know that a process is gone
 NOTED = 0.5  # s for a latch to be noted
+RECOVERED = 11.0  # s in which a new gateway has found the machine, and waited for a run to report itself
 ANSWERED = 12.0  # s in which every call is answered
 
 
@@ -28,6 +29,7 @@ def look(site: Site) -> None:
         _left(unit, now)
         _believed(unit, now)
         _pressed(site, unit, now)
+        _orphaned(unit, now)
     for run in site.scheduler.runs.values():
         run.in_time(now)
         _abandoned(site, run, now)
@@ -131,6 +133,20 @@ def _pressed(site: Site, unit: Unit, now: float) -> None:
     since = max(unit.missed, gateway.up_at)
     if now - since > HANDED_ON + FOUND and min(gateway.worked_for(), site.host.worked_for() - now + unit.missed) > 0.0:
         raise Violation(f"the stop button was pressed without {gateway.name}, which does not know it")
+
+
+def _orphaned(unit: Unit, now: float) -> None:
+    """A machine whose scheduler was killed during a run is latched, unless another run has taken it since."""
+    gateway, orphan = unit.gateway, unit.orphan
+    core = gateway.core
+    if orphan is None or core is None:
+        return
+    if core.latch.cause is not None or core.run not in (None, orphan.run) or unit.second is not None:
+        unit.orphan = None
+        return
+    heard = gateway.life == orphan.life and min(orphan.knew, gateway.worked_for() - now + orphan.since) > FOUND
+    if gateway.worked_for() > (now - orphan.since if heard else RECOVERED) and now - orphan.since > STOP_IN_TIME:
+        raise Violation(f"the scheduler of {unit.name} is lost for {now - orphan.since:.1f} s, and it is not latched")
 
 
 def _answered(unit: Unit, now: float) -> None:

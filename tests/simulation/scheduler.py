@@ -11,6 +11,7 @@ from simulation.gateway import State
 from simulation.lease import FORGET, PermitProcess
 from simulation.relay import Relay
 from simulation.task import Task, some_task
+from simulation.unit import Orphan, Unit
 from simulation.world import Violation
 from tms_decision.gateway import effects as f
 from tms_decision.leaf.events import Key
@@ -27,7 +28,6 @@ from tms_ts.run_states import entered
 
 if TYPE_CHECKING:
     from simulation.site import Site
-    from simulation.unit import Unit
 
 LATE = 1.3  # s after the end or the loss of a run in which its last goal may leave
 FOUND = 3.0  # s for processes to find each other, on a busy PC
@@ -74,6 +74,10 @@ class Scheduler(PermitProcess):
         self.later(settled + self.world.random.random(), self.begin_some)
 
     def kill(self) -> None:
+        for run in self.runs.values():
+            for unit in run.units if run.core.held else ():
+                gateway = unit.gateway
+                unit.orphan = Orphan(run.number, self.world.now, gateway.life, gateway.worked_for())
         super().kill()
         self.disk.killed()
 

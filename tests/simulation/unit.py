@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 from itertools import count
 from typing import TYPE_CHECKING
 
@@ -40,6 +41,16 @@ class Trap:
             step()
 
 
+@dataclass(frozen=True)
+class Orphan:
+    """A machine whose scheduler was killed during a run."""
+
+    run: int
+    since: float
+    life: int  # of its gateway
+    knew: float  # s for which that had worked
+
+
 def _nobody_checks(unit: Unit, owner: Owner | None) -> None:
     """Before the site is complete."""
 
@@ -71,6 +82,7 @@ class Unit:
         self.latched_since = 0.0
         self.by_hand_at = float("-inf")  # when a person last had it
         self.lies_since = 0.0  # when it last became unkind, or kind again
+        self.orphan: Orphan | None = None  # while the scheduler of its run is lost, and it is not latched yet
         self.replayed_at = float("-inf")  # when it last ended to tell its past for its present
         self.levers = 0.0, 0.0  # when somebody moves it by its levers without a word, from and to
         self.receipts: list[f.Receipt] = []

@@ -56,8 +56,7 @@ def _hear(gateway: Gateway, goal: Goal, now: float) -> None:
         if now - goal.since >= SERVER_LIMIT:
             _finish(gateway, now, goal, "ABORTED", r.NotReady(silent))
         return
-    trouble = gateway.watch.trouble(now)
-    if trouble is not None:
+    if (trouble := gateway.watch.trouble(now)) is not None:
         _finish(gateway, now, goal, "ABORTED", r.NotReady(trouble.reason))
         return
     _last_look(gateway, goal, now)

@@ -112,10 +112,9 @@ def take(gateway: Gateway, now: float, asked: TakeAsked) -> None:
 
 def _taken(gateway: Gateway, now: float, problem: Reason | None, request: int, who: str, back: bool) -> None:
     wrong: Reason | None = r.NotKept(problem) if problem is not None else None
-    if wrong is None and not back:  # a goal may have begun meanwhile
-        wrong = _keeps_from_taking(gateway, now, who)
-        if wrong is not None:
-            notes.drive(gateway, "")
+    # A goal may have begun meanwhile.
+    if wrong is None and not back and (wrong := _keeps_from_taking(gateway, now, who)) is not None:
+        notes.drive(gateway, "")
     if wrong is not None:
         gateway.do(Taken(request, wrong))
     elif back:

@@ -62,9 +62,8 @@ def _frozen(gateway: Gateway, goal: Goal, follower: Follower, now: float) -> Rea
     if source is None:
         return None
     same = now - max(source.changed, goal.begun + gateway.watch.reached / gateway.facts.speed)
-    if same <= source.source.frozen_after or not follower.moved(now, same):
-        return None
-    return Frozen(source.label, same)
+    frozen = same > source.source.frozen_after and follower.moved(now, same)
+    return Frozen(source.label, same) if frozen else None
 
 
 def check_chain(gateway: Gateway, now: float) -> None:

@@ -44,10 +44,7 @@ def advance(gateway: Gateway, now: float) -> None:
 
 def signal(gateway: Gateway, now: float, event: Signal) -> None:
     """Receive /emergency_signal: true stops and latches, however often it is repeated; false does not re-arm."""
-    if not event.on:
-        gateway.pressed = float("-inf")
-        return
     fresh = now - gateway.pressed > PRESSED
-    gateway.pressed = now
-    if fresh or gateway.latch.cause is None:
+    gateway.pressed = now if event.on else float("-inf")
+    if event.on and (fresh or gateway.latch.cause is None):
         stops.stop(gateway, now, SoftwareStop(), StopKind.LATCH)

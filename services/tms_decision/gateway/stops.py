@@ -43,6 +43,7 @@ def stop(
     owner = active.owner if active is not None else None
     if latched:
         gateway.latch.close(cause)
+        notes.keep(gateway)
     elif kind is StopKind.HOLD and owner is not None:
         gateway.latch.keep(cause, owner)
     goal, over = (active, now) if active is not None else gateway.last
@@ -52,8 +53,6 @@ def stop(
         expected = UNKNOWN
     made = _begin(gateway, now, cause, latched, run or (owner.run if owner is not None else gateway.run or 0), expected)
     made.broken = broken
-    if latched:
-        notes.keep(gateway)
     if active is not None:
         active.stop = active.stop or made
     gateway.vigil.begin()
@@ -91,7 +90,9 @@ def advance(gateway: Gateway, now: float) -> None:
     for one in list(gateway.stops):
         if one.receipt is not None:
             if now >= one.limit + DISK_LIMIT and not one.over:
-                _over(gateway, one, replace(one.receipt, confirmed=False, latched=True, detail=r.NoEnd()))
+                late = replace(one.receipt, confirmed=False, latched=True, detail=r.NoEnd())
+                _unproven(gateway, one, late)
+                _over(gateway, one, late)
         elif _seen(gateway, one, now) or now >= one.limit:
             if not _released(gateway, one, now):
                 _end(gateway, one, now)
@@ -120,13 +121,18 @@ def _end(gateway: Gateway, one: Stop, now: float) -> None:
     """Note what a stop has shown, then keep its receipt."""
     receipt = one.receipt = _receipt(gateway, one, now)
     if not receipt.confirmed:
-        gateway.latch.close(r.NotSeenToStand(one.cause, receipt.detail or r.NoEnd(), gateway.facts.name))
-        gateway.do(f.Emergency(True), f.Publish())
+        _unproven(gateway, one, receipt)
     if receipt.confirmed and gateway.run is None:  # it stands, and no run's goal moves it
         notes.hold(gateway, "", 0)
     else:
         notes.keep(gateway)
     gateway.do(f.KeepReceipt(one.number, receipt))
+
+
+def _unproven(gateway: Gateway, one: Stop, receipt: f.Receipt) -> None:
+    gateway.latch.close(r.NotSeenToStand(one.cause, receipt.detail or r.NoEnd(), gateway.facts.name))
+    gateway.do(f.Emergency(True), f.Publish())
+    notes.keep(gateway)
 
 
 def _receipt(gateway: Gateway, one: Stop, now: float) -> f.Receipt:

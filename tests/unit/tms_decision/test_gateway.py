@@ -24,6 +24,7 @@ from tms_decision.reasons import (
     LeftStandStill,
     MachineLatched,
     ManualMode,
+    NoEnd,
     NoGoalAnswer,
     NoPermit,
     NoScheduler,
@@ -315,6 +316,20 @@ def test_it_is_watched_while_the_disk_stalls() -> None:
     rig.plant.coming.append((rig.now, 0.2))
     rig.run(1.0)
     assert rig.gateway.latch.cause == LeftStandStill() and rig.plant.emergency
+
+
+def test_an_answer_without_the_disk_proves_nothing_and_latches() -> None:
+    """The caller is told that the machine is latched, so it is."""
+    rig = ready().moving(seconds=20.0)
+    rig.disk_answers = False
+    rig.happens(e.StopAsked(5, None, True))
+    rig.run(10.9)
+    assert not rig.all(f.Stopped) and rig.gateway.latch.cause is None
+    rig.run(0.5)
+    answer = rig.all(f.Stopped)[-1].receipt
+    assert (answer.confirmed, answer.latched, answer.detail) == (False, True, NoEnd())
+    assert isinstance(rig.gateway.latch.cause, NotSeenToStand) and rig.plant.emergency
+    assert rig.all(f.KeepState)[-1].latched == rig.gateway.latch.cause
 
 
 def test_a_motion_that_lasts_too_long_is_stopped() -> None:
