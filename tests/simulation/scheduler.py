@@ -74,7 +74,7 @@ class Scheduler(PermitProcess):
         self.later(settled + self.world.random.random(), self.begin_some)
 
     def kill(self) -> None:
-        for run in self.runs.values():
+        for run in self.runs.values() if self.works() else ():  # a frozen one was lost before
             for unit in run.units if run.core.held else ():
                 gateway = unit.gateway
                 unit.orphan = Orphan(run.number, self.world.now, gateway.life, gateway.worked_for())
