@@ -136,17 +136,19 @@ def _pressed(site: Site, unit: Unit, now: float) -> None:
 
 
 def _orphaned(unit: Unit, now: float) -> None:
-    """A machine whose scheduler was killed during a run is latched, unless another run has taken it since."""
+    """A machine whose scheduler was killed during a run is latched; a gateway that was frozen may not notice."""
     gateway, orphan = unit.gateway, unit.orphan
     core = gateway.core
     if orphan is None or core is None:
         return
-    if core.latch.cause is not None or core.run not in (None, orphan.run) or unit.second is not None:
+    if core.latch.cause is not None or gateway.frozen() or unit.second is not None:
         unit.orphan = None
         return
-    heard = gateway.life == orphan.life and min(orphan.knew, gateway.worked_for() - now + orphan.since) > FOUND
-    if gateway.worked_for() > (now - orphan.since if heard else RECOVERED) and now - orphan.since > STOP_IN_TIME:
-        raise Violation(f"the scheduler of {unit.name} is lost for {now - orphan.since:.1f} s, and it is not latched")
+    waits = now - orphan.since
+    heard = gateway.life == orphan.life and min(orphan.knew, gateway.worked_for() - waits) > FOUND
+    late = waits > STOP_IN_TIME if heard else gateway.worked_for() > RECOVERED
+    if late or core.run not in (None, orphan.run):
+        raise Violation(f"the scheduler of {unit.name} is lost for {waits:.1f} s, and it is not latched")
 
 
 def _answered(unit: Unit, now: float) -> None:
