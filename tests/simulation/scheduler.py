@@ -77,8 +77,8 @@ class Scheduler(PermitProcess):
         for run in self.runs.values() if self.works() else ():  # a frozen one was lost before
             for unit in run.units if run.core.held else ():
                 gateway = unit.gateway
-                if unit.owner is None or unit.owner.run != run.number:
-                    continue  # no goal of it has left
+                if gateway.notes.run != run.number:
+                    continue  # since the machine was last seen to stand, no goal of it has left
                 unit.orphan = Orphan(run.number, self.world.now, gateway.life, gateway.worked_for())
         super().kill()
         self.disk.killed()
