@@ -115,6 +115,18 @@ class Hits:
         return reason is None or (row.machine is not None and reason not in (PortSilent(name), ProcessStarting()))
 
 
+def power_off(pids: Sequence[int]) -> float:
+    """Kill all processes, supervisord first in `pids`; returns the time of the first signal (s since 1970).
+
+    Supervisord is killed last: at its end, all others would end in order, and stop their machines. It is frozen first,
+    else it would start them again.
+    """
+    at, (top, *others) = unix_time(), pids
+    _signal(signal.SIGSTOP, [top])
+    _signal(signal.SIGKILL, [*others, top])
+    return at
+
+
 def _signal(number: signal.Signals, pids: Sequence[int]) -> None:
     for pid in pids:
         try:

@@ -11,7 +11,7 @@ from tms_msg_rc.srv import StopMachine
 
 from tms_cli.drill.busy import stood_still
 from tms_cli.drill.history import FOLDER, Hit, happenings, keep
-from tms_cli.drill.hits import BACK_LIMIT, Hits
+from tms_cli.drill.hits import BACK_LIMIT, Hits, power_off
 from tms_cli.drill.operasim import OperaSim
 from tms_cli.drill.plan import NONE, TROUBLES, TS, How, StopScenario, Trial
 from tms_cli.drill.record import TrialRecording
@@ -132,7 +132,7 @@ class Hand:
             pids = self._hits.everything()
             struck.processes = self._hits.all_names([hand.work.subtask for hand in hands])
             until(at)
-            struck.hit.set_result(self._hits.hit(How.KILL, pids))
+            struck.hit.set_result(power_off(pids))
             struck.back.set_result(self._hits.power_on(pids, struck.hit.result(), struck.started))
         else:
             found = self._hits.pids(self._hits.names(stop, {hand.machine: hand.work.subtask for hand in hands}))
