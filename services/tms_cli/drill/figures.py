@@ -1,6 +1,7 @@
 """The figures over all trials. Pure logic."""
 
 import math
+from collections import Counter
 from collections.abc import Sequence
 from typing import Any
 
@@ -19,6 +20,7 @@ def percentile(values: Sequence[float], share: float) -> float | None:
 def summary(rows: Sequence[Row], seed: int) -> dict[str, Any]:
     """The document of --json."""
     tried = [row for row in rows if row.outcome != LEFT_OUT and not row.void]
+    bad = Counter(name for row in rows for name in wrong(row))
     reported = [row.reported_s for row in tried if row.reported_s is not None]
     stood = [row.stood_s for row in tried if row.stood_s is not None and measured(row)]
     backs = [row.back_s for row in tried if row.back_s is not None]
@@ -27,7 +29,7 @@ def summary(rows: Sequence[Row], seed: int) -> dict[str, Any]:
         "trials": len(tried),
         "kills": sum(row.how in (How.KILL.value, How.POWER.value) for row in tried),
         "void": sum(bool(row.void) for row in rows),
-        **{name: sum(name in wrong(row) for row in rows) for name in BAD},
+        **{name: bad[name] for name in BAD},
         "unconfirmed": sum(row.unconfirmed for row in tried),
         "unconfirmed_in_order": sum(row.unconfirmed and row.fault == NONE and _single(row) for row in tried),
         "stop_p50_s": _rounded(percentile(stood, 0.5)),

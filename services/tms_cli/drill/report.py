@@ -55,9 +55,9 @@ def text(figures: dict[str, Any], rows: Sequence[Row]) -> str:
     widths = [max(len(row[column]) for row in cells) for column in range(len(STOPS))]
     table = ["  ".join(word.ljust(width) for word, width in zip(row, widths, strict=True)).rstrip() for row in cells]
     found = [
-        f"WRONG: {', '.join(map(figures_name, wrong(row)))}: {line(row)}"
+        f"WRONG: {', '.join(map(figures_name, names))}: {line(row)}"
         for row in rows
-        if wrong(row) and row.outcome != LEFT_OUT
+        if row.outcome != LEFT_OUT and (names := wrong(row))
     ]
     return "\n".join([*table, "", *facts, *found])
 
@@ -85,13 +85,13 @@ def markdown(rows: Sequence[Row], figures: dict[str, Any], site: str) -> str:
 
 
 def _cells(row: Row) -> list[str]:
-    wrong = [name for name in ("unlatched", "ran_on", "disturbed") if getattr(row, name)]
-    wrong += ["unconfirmed"] if row.unconfirmed else []
-    wrong += [f"void: {row.void}"] if row.void else []
+    marks = [name for name in ("unlatched", "ran_on", "disturbed") if getattr(row, name)]
+    marks += ["unconfirmed"] if row.unconfirmed else []
+    marks += [f"void: {row.void}"] if row.void else []
     return [
         row.machine, row.stop, row.fault, _text(row.reported_s), _text(row.stood_s), _text(row.travel_rad),
         _text(row.travel_m), _text(row.back_s), row.outcome, "; ".join(row.receipts).replace("|", "/"),
-        ", ".join([*wrong, *filter(None, [row.false_receipt])]),
+        ", ".join([*marks, *filter(None, [row.false_receipt])]),
     ]  # fmt: skip
 
 

@@ -122,7 +122,7 @@ def _end(gateway: Gateway, one: Stop, now: float) -> None:
     receipt = one.receipt = _receipt(gateway, one, now)
     if not receipt.confirmed:
         _unproven(gateway, one, receipt)
-    if receipt.confirmed and gateway.run is None:  # it stands, and no run's goal moves it
+    elif gateway.run is None:  # it stands, and no run's goal moves it
         notes.hold(gateway, "", 0)
     else:
         notes.keep(gateway)
