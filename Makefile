@@ -233,9 +233,7 @@ containers: ## the system packages of test-docker: a Docker engine, Compose and 
 	@DOCKER=$(DOCKER) sh deploy/system-packages.sh containers
 
 test-docker: setup containers ## a site of four PCs as containers; starts a Docker engine where none runs
-	@started=$$(DOCKER=$(DOCKER) sh deploy/engine.sh) || exit 1; \
-	  trap '[ -z "$$started" ] || sh deploy/engine.sh stop $$started' EXIT; \
-	  DOCKER=$(DOCKER) $(PY) -m pytest -p no:randomly -m docker -s --durations=0 tests/docker
+	@DOCKER=$(DOCKER) $(PY) -m pytest -p no:randomly -m docker -s --durations=0 tests/docker
 
 clean: down ## remove the environments and the demo's state (SITE=name: that site's)
 	rm -rf $(VENV) $(VENV)-store $(VENV)-console node_modules $(dir $(BUILT)) .state/$(basename $(notdir $(or $(SITE),demo)))

@@ -16,11 +16,46 @@ from docker_site import DOCKER, IMAGE, Yard
 from conftest import PROJECT
 
 
+class Engine:
+    """The Docker engine: where none answers, one is started."""
+
+    def __init__(self) -> None:
+        self._pid = script("engine.sh").stdout.strip()  # empty: not ours
+
+    def again(self) -> None:
+        """Start it again after it has ended by itself."""
+        self.stop()
+        self._pid = script("engine.sh").stdout.strip()
+
+    def stop(self) -> None:
+        """End it, if it is ours; one that has ended by itself tells why."""
+        if self._pid:
+            print(script("engine.sh", "stop", self._pid).stderr)
+
+
+def script(name: str, *words: str, check: bool = True) -> subprocess.CompletedProcess[str]:
+    """Run a script of `deploy`."""
+    argv = ["sh", str(PROJECT / "deploy" / name), *words]
+    return subprocess.run(argv, env={**os.environ, "DOCKER": DOCKER}, capture_output=True, text=True, check=check)
+
+
 @pytest.fixture(scope="session")
-def image() -> None:
+def engine() -> Iterator[Engine]:
+    """The Docker engine, for the time of the tests."""
+    ours = Engine()
+    try:
+        yield ours
+    finally:
+        ours.stop()
+
+
+@pytest.fixture(scope="session")
+def image(engine: Engine) -> None:
     """The image with the embedded store, of this checkout."""
-    argv = ["sh", str(PROJECT / "deploy/image.sh"), IMAGE, "demo"]
-    done = subprocess.run(argv, env={**os.environ, "DOCKER": DOCKER}, capture_output=True, text=True, check=False)
+    done = script("image.sh", IMAGE, "demo", check=False)
+    if "error during connect" in done.stderr:  # Docker 20.10 may crash as it reads its cache: moby/buildkit#2861
+        engine.again()
+        done = script("image.sh", IMAGE, "demo", check=False)
     assert done.returncode == 0, done.stderr[-2000:]
 
 
