@@ -8,6 +8,7 @@ from tms_msg_rc.msg import MachineState, StopReceipt
 from tms_msg_rc.srv import StopMachine
 
 from tms_config.clock import monotonic, sleep
+from tms_decision.duty import Press
 from tms_decision.owner import Owner
 from tms_decision.permit_link import NOBODY
 from tms_decision.reasons import DrivenByHand, MachineLatched, ProcessAway, SoftwareStop
@@ -16,10 +17,10 @@ from tms_machine.permit import Permit, RemotePermit
 from tms_machine.reasons import NoReason
 from tms_reason import wire
 from tms_reason.reason import Reason
+from tms_reason.wire import to_line
 from tms_runtime.app import App
 from tms_runtime.fence import goal_id
 from tms_schedulers.names import schedulers
-from tms_ts.missed_presses import MissedPresses
 from tms_ts.reasons import MachineNotReady
 from tms_ts.run_permit import RunPermit
 
@@ -56,7 +57,7 @@ class Gateways:
         self._controls: dict[str, Controls] = {}
         self._permits: dict[str, RunPermit] = {}
         self._holders: dict[str, Holder] = {}
-        self.missed_presses = MissedPresses(app.site.file.machines)
+        self._presses = {machine: Press() for machine in app.site.file.machines}
         for machine in app.site.file.machines:
             self._attend(machine)
         app.ros.subscribe(Bool, "/emergency_signal", self._signal, depth=SIGNALS)
@@ -144,7 +145,9 @@ class Gateways:
 
     def _state(self, machine: str, state: MachineState) -> None:
         self._states[machine] = state
-        self.missed_presses.shows(machine, bool(state.latch))
+        alone = self._gateways[machine].alive and self._gateways[machine].asserted < 2
+        if self._presses[machine].due(monotonic(), alone, bool(state.latch)):
+            self._hand_on(machine)
         holder = self._holders.get(machine)
         if holder is not None and state.latch:
             holder.stopped(machine, wire.known(state.latch))
@@ -158,18 +161,28 @@ class Gateways:
 
     def _signal(self, message: Bool) -> None:
         if message.data:
-            self.missed_presses.pressed(monotonic())
+            for press in self._presses.values():
+                press.since = monotonic()
             for machine, holder in list(self._holders.items()):
                 holder.stopped(machine, SoftwareStop())
+
+    def _hand_on(self, machine: str) -> None:
+        """Tell a gateway of a press that it does not know, also if its host agent was away as well."""
+        self._app.log.error("press_handed_on", machine=machine)
+        request = StopMachine.Request(cause=to_line(SoftwareStop()), orderly=False)
+        self._app.ros.call_then(StopMachine, f"/{machine}/rc/stop", request, _told)
 
     def _gateway_changed(self, machine: str, gateway: RemotePermit) -> None:
         """Stop the machine of a lost gateway at once, as the gateway would; its successor does the same, but later."""
         if gateway.alive:
             return
+        self._presses[machine].due(monotonic(), alive=False, latched=None)
         if gateway.goal == NOBODY:
-            self.missed_presses.left(machine)
             return
-        self.missed_presses.lost(machine, monotonic())
         self._controls[machine].zero()
         self._controls[machine].cancel_everything()
         self._app.log.warning("gateway_lost", machine=machine, action="cancelled its goals")
+
+
+def _told(_answer: StopMachine.Response) -> None:
+    """The state of the gateway shows whether it is latched."""

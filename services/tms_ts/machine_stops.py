@@ -9,7 +9,7 @@ from tms_msg_rc.srv import StopMachine
 from tms_config.clock import monotonic
 from tms_decision import RECEIPT_LIMIT
 from tms_decision.gateway.stops import stood_after
-from tms_decision.reasons import MachineUnconfirmed, ProcessLost, SoftwareStop, StopUnconfirmed
+from tms_decision.reasons import MachineUnconfirmed, ProcessLost, StopUnconfirmed
 from tms_machine.reasons import NoReason
 from tms_reason import wire
 from tms_reason.errors import RosError
@@ -34,13 +34,12 @@ class MachineStops:
     def stop(self, machine: str, cause: Reason) -> StopReceipt:
         """Have the gateway stop the machine and watch it stand. Blocks; never raises.
 
-        If the gateway is lost meanwhile, its successor is asked again. One that missed a press of the button latches.
+        If the gateway is lost meanwhile, its successor is asked again.
         """
         line, deadline = to_line(cause), monotonic() + RECEIPT_LIMIT
         while True:
             self._gateways.wait_alive(machine, GATEWAY_LIMIT)
-            missed = machine in self._gateways.missed_presses
-            request = StopMachine.Request(cause=to_line(SoftwareStop()) if missed else line, orderly=not missed)
+            request = StopMachine.Request(cause=line, orderly=True)
             lost = self._gateways.loss(machine)
             try:
                 answer = self._ros.call(StopMachine, f"/{machine}/rc/stop", request, RECEIPT_LIMIT, lost)

@@ -85,7 +85,7 @@ inline send_goal(g, m) {
 }
 
 inline start_gateway(g, m) {
-	gateway[g] = UP; claim_open[g] = 1; away[g] = duty[m];
+	gateway[g] = UP; claim_open[g] = 1; away[g] = duty[m]; holder[g] = note_run[g];
 	if
 #ifdef NO_NOTE_MEANS_ARMED
 	:: note_armed[g] || g >= MACHINES -> latch[g] = ARMED; shown[g] = 0; claim_run[g] = note_run[g]

@@ -99,6 +99,9 @@ end:	do
 		r = runs[m]; end_run(r); r = 0 }
 	:: atomic { scheduler == UP && over(m) && see(OVER, 0, runs[m]) -> seen;
 		r = runs[m]; end_of_run(r); r = 0 }
+#ifdef HISTORY /* it hands on a press as well; to explore, the host agent's is enough */
+	:: atomic { scheduler == UP && gateway[m] == UP && presses > 0 && see(HANDED_ON, m, 0) -> seen; hear_press(m) }
+#endif
 	/* the relay */
 	:: atomic { relay[m] == UP && scheduler != FROZEN && serves[m] != 0 && (answer[m] != 0 || gateway[m] != UP || (waiting[m] != serves[m] && current[m] != serves[m])) ->
 		if

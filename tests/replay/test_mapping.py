@@ -81,7 +81,7 @@ def test_a_press_that_does_not_latch_has_another_history(monkeypatch: pytest.Mon
     right = histories(plan(name), range(1))
     without = lambda gateway, now, cause, kind, **more: stops.stop(gateway, now, cause, stops.StopKind.PLAIN, **more)  # noqa: E731
     monkeypatch.setattr(presses, "stops", type("Stops", (), {"stop": staticmethod(without)}))
-    put_out("the scheduler's stop after a press", monkeypatch.setattr)  # which would latch it by itself
+    put_out("the scheduler's handing on of a press", monkeypatch.setattr)  # which would latch it by itself
     assert not right & histories(plan(name), range(1))
 
 

@@ -97,7 +97,7 @@ def test_a_stop_asked_of_a_gateway_that_is_being_lost_is_asked_of_its_successor(
 
     two_nodes[0].offer_slow(StopMachine, "/zx200/rc/stop", gateway)
     back = lambda machine, seconds: alive.set()  # noqa: E731
-    gateways = SimpleNamespace(wait_alive=back, loss=lambda machine: lambda: not alive.is_set(), missed_presses=())
+    gateways = SimpleNamespace(wait_alive=back, loss=lambda machine: lambda: not alive.is_set())
     identity = Identity(1, 3, SimpleNamespace(), Replay([]))  # type: ignore[arg-type]
     machines = Machines(two_nodes[1], None, None, gateways, lambda: None, lambda *_: None, identity)  # type: ignore[arg-type]
     assert machines.stops.stop("zx200", Foreign("test")).confirmed

@@ -20,7 +20,7 @@ from tms_decision.leaf.step import ask
 from tms_decision.leaf.step import step as leaf_step
 from tms_decision.owner import Owner
 from tms_decision.permit_link import NOBODY
-from tms_decision.reasons import NoPermit, ProcessLost, SoftwareStop
+from tms_decision.reasons import NoPermit, ProcessLost
 from tms_decision.run import effects as rf
 from tms_decision.run import events as re
 from tms_decision.run.step import TICK_LIMIT, Phase, Run, step
@@ -201,8 +201,7 @@ class Execution:
                 over.append(True)
                 told(None)
             elif unit.gateway.works() and unit.gateway.life != life:
-                asks = _missed_press if unit.name in self.scheduler.missed_presses else _end_of_run
-                self.world.send("stops", lambda: unit.gateway.call(asks, self.scheduler.in_life(answered)))
+                self.world.send("stops", lambda: unit.gateway.call(_end_of_run, self.scheduler.in_life(answered)))
                 self.scheduler.later(0.3, lambda life=unit.gateway.life: ask_again(life))  # type: ignore[misc]
             else:
                 self.scheduler.later(0.3, lambda: ask_again(life))
@@ -312,10 +311,6 @@ class Execution:
 def _trouble(unit: Unit, name: str) -> Reason | None:
     """What is wrong with a process, as far as the host agent has told."""
     return ProcessState(f"{unit.name}:{name}", "STARTING") if unit.pids.get(name) == 0 else None
-
-
-def _missed_press(number: int) -> ge.Event:
-    return ge.StopAsked(number, SoftwareStop(), False)
 
 
 def _end_of_run(number: int) -> ge.Event:

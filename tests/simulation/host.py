@@ -48,7 +48,7 @@ class Standby:
         """Command what is due."""
         if self.press.due(now, alone(self._gateway, now), self._latched if self._reported else None):
             self._host.world.tell("tms:host", f"hands a press on to {self._unit.name}:rc")
-            self._host.world.send(f"{self._unit.name} calls", lambda: self._unit.gateway.call(_press, lambda _: None))
+            self._host.world.send(f"{self._unit.name} calls", lambda: self._unit.gateway.call(press, lambda _: None))
         act = self._duty.check(now, self._status(now))
         self._reported = False
         if act is not None:
@@ -82,7 +82,8 @@ def alone(gateway: PermitLink, now: float) -> bool:
     return gateway.alive(now) and gateway.asserted < 2
 
 
-def _press(number: int) -> e.Event:
+def press(number: int) -> e.Event:
+    """What a gateway is asked that does not know of a press."""
     return e.StopAsked(number, SoftwareStop(), False)
 
 

@@ -8,11 +8,13 @@ from typing import TYPE_CHECKING
 from simulation.disk import Entry, RunDisk
 from simulation.execution import Execution
 from simulation.gateway import State
+from simulation.host import alone, press
 from simulation.lease import FORGET, PermitProcess
 from simulation.relay import Relay
 from simulation.task import Task, some_task
 from simulation.unit import Orphan, Unit
 from simulation.world import Violation
+from tms_decision.duty import Press
 from tms_decision.gateway import effects as f
 from tms_decision.leaf.events import Key
 from tms_decision.owner import Owner
@@ -23,7 +25,6 @@ from tms_decision.run.step import Phase
 from tms_reason import wire
 from tms_reason.reason import Foreign, Reason
 from tms_ts.interrupted_run import InterruptedRun
-from tms_ts.missed_presses import MissedPresses
 from tms_ts.run_states import entered
 
 if TYPE_CHECKING:
@@ -45,7 +46,7 @@ class Scheduler(PermitProcess):
         self.told: dict[str, str] = {}  # outcomes that clients know
         self._receipts: list[Stop] = []
         self._states: dict[str, State] = {}
-        self.missed_presses = MissedPresses(site.units)
+        self._presses: dict[str, Press] = {}
         self._gateways: dict[str, PermitLink] = {}
         self._last = 0
         self._ended: dict[int, float] = {}  # when runs have ended, by fencing number
@@ -56,7 +57,7 @@ class Scheduler(PermitProcess):
     def start(self) -> None:
         self.begin()
         self.runs, self._states, self._receipts = {}, {}, []
-        self.hung_at, self.missed_presses = float("inf"), MissedPresses(self.site.units)
+        self.hung_at, self._presses = float("inf"), {name: Press() for name in self.site.units}
         self._gateways = {name: PermitLink("rc") for name in self.site.units}
         for name, unit in self.site.units.items():
             link = self._gateways[name]
@@ -227,11 +228,13 @@ class Scheduler(PermitProcess):
         now = self.world.now
         self._gateways[name].reported(alive, stale, False, now)
         if alive == 0:
-            self.missed_presses.lost(name, now)
+            self._presses[name].due(now, alive=False, latched=None)
 
     def _state(self, name: str, state: State) -> None:
         self._states[name] = state
-        self.missed_presses.shows(name, state.latch is not None)
+        now = self.world.now
+        if self._presses[name].due(now, alone(self._gateways[name], now), state.latch is not None):
+            self.hand_on(name)
         run = next((run for run in self.runs.values() if name in run.task.machines() and run.core.held), None)
         if run is not None and state.latch is not None:
             run.stopped(name, state.latch)
@@ -241,9 +244,15 @@ class Scheduler(PermitProcess):
 
     def pressed(self) -> None:
         """The stop button is pressed."""
-        self.missed_presses.pressed(self.world.now)
+        for one in self._presses.values():
+            one.since = self.world.now
         for run in [run for run in self.runs.values() if run.core.held]:
             run.stopped(run.units[0].name, SoftwareStop())
+
+    def hand_on(self, name: str) -> None:
+        """Tell a gateway of a press that it does not know."""
+        self.world.tell(self.name, f"hands a press on to {name}:rc")
+        self.world.send(f"{name} calls", lambda: self.site.units[name].gateway.call(press, lambda _: None))
 
     def latch(self, name: str) -> Reason | None:
         """Why the machine is latched, as far as is known."""

@@ -7,7 +7,7 @@ from tms_decision import reasons as r
 from tms_decision.gateway import active, arming, goals, motion, notes, permits, presses, recovery, stops
 from tms_decision.gateway import events as e
 from tms_decision.gateway.effects import Effect, Publish
-from tms_decision.gateway.state import SCHEDULER, Gateway, Recovery
+from tms_decision.gateway.state import SCHEDULER, Gateway, Notes, Recovery
 from tms_decision.gateway.stops import StopKind
 from tms_decision.latch import Latch
 from tms_decision.permit_link import PermitLink
@@ -28,9 +28,9 @@ def start(
     if left.unproven:
         cause = r.GatewayRestartedUnproven(process)
     gateway = Gateway(
-        facts, StandStill(facts), Latch(facts.name, left.latched),
-        {name: PermitLink(name) for name in (SCHEDULER, *names)},
-        Recovery(r.ProcessLost(cause), left.holder, left.run, left.unproven, now),
+        facts, StandStill(facts), Latch(facts.name, left.latched), notes=Notes(left.holder, left.run),
+        links={name: PermitLink(name) for name in (SCHEDULER, *names)},
+        recovery=Recovery(r.ProcessLost(cause), left.holder, left.run, left.unproven, now),
     )  # fmt: skip
     gateway.wall, gateway.standby = wall - now, now + presses.STANDBY
     gateway.recovering = bool(left.holder)

@@ -597,6 +597,15 @@ def test_a_gateway_that_a_run_has_held_stops_the_machine_and_holds_it_for_the_ru
     rig.moving(1, Owner(7, 3, 1))
 
 
+def test_a_gateway_that_is_lost_once_more_leaves_the_run_to_its_successor() -> None:
+    rig = Rig(e.Left(None, "run-1", 7))
+    rig.permits(subtask=None)
+    rig.run(10.0)
+    assert rig.receipt.confirmed and rig.gateway.notes.asked == (None, "run-1", 7)
+    rig.permits(None, None)
+    assert rig.gateway.notes.asked == (None, "", 0)
+
+
 @pytest.mark.parametrize("left", [e.Left(None), e.Left(None, "run-1", 7)], ids=["left idle", "held by the run"])
 def test_a_goal_of_a_run_waits_for_the_end_of_a_start(left: e.Left) -> None:
     rig = Rig(left).run(0.5)

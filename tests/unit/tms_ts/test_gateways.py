@@ -10,14 +10,12 @@ from std_msgs.msg import Bool
 from tms_msg_rc.msg import MachineState, StopReceipt
 from tms_msg_rc.srv import StopMachine
 
-from tms_config.clock import monotonic
-from tms_decision.duty import NOTED
+from tms_decision.duty import HANDED_ON, NOTED
 from tms_decision.permit_link import NOBODY
-from tms_decision.reasons import Cancelled, SoftwareStop
+from tms_decision.reasons import SoftwareStop
 from tms_reason.wire import to_line
 from tms_ts import gateways
 from tms_ts.gateways import Gateways, Holder
-from tms_ts.machine_stops import MachineStops
 
 
 @pytest.mark.parametrize(
@@ -35,7 +33,9 @@ def test_a_run_hears_of_its_own_stops_only(run: int, at: int, concerns: bool) ->
     assert holder.concerns(StopReceipt(run=run, stamp=Time(sec=at, nanosec=1))) is concerns
 
 
-QUIET = SimpleNamespace(zero=lambda: None, cancel_everything=lambda: None, warning=lambda *_, **__: None)
+QUIET = SimpleNamespace(
+    zero=lambda: None, cancel_everything=lambda: None, warning=lambda *_, **__: None, error=lambda *_, **__: None
+)  # fmt: skip
 
 
 class FakeRos:
@@ -43,7 +43,7 @@ class FakeRos:
 
     def __init__(self) -> None:
         self.heard: dict[str, Callable[[Any], None]] = {}
-        self.asked: list[StopMachine.Request] = []
+        self.asked: list[str] = []
 
     def subscribe(self, _kind: Any, topic: str, hear: Callable[[Any], None], **_quality: Any) -> None:
         self.heard[topic] = hear
@@ -51,52 +51,100 @@ class FakeRos:
     def prepare(self, *_service: Any) -> None:
         pass
 
-    def call(self, _kind: Any, _name: str, request: StopMachine.Request, *_limits: Any) -> StopMachine.Response:
-        self.asked.append(request)
-        return StopMachine.Response()
+    def call_then(self, _kind: Any, name: str, request: StopMachine.Request, _answered: Any) -> None:
+        assert not request.orderly and request.cause == to_line(SoftwareStop())
+        self.asked.append(name)
 
 
-def test_a_gateway_that_has_missed_a_press_is_asked_to_latch(monkeypatch: pytest.MonkeyPatch) -> None:
-    changed: dict[str, Callable[[Any], None]] = {}
+class Rig:
+    """The gateways of two machines, as the scheduler has them."""
 
-    def made(_ros: Any, _pulse: Any, machine: str, _kind: str, told: Callable[[Any], None]) -> Any:
-        changed[machine] = told
-        return SimpleNamespace(alive=True)
+    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.now, self.ros = 100.0, FakeRos()
+        self.links: dict[str, Any] = {}
+        self.changed: dict[str, Callable[[Any], None]] = {}
+        monkeypatch.setattr(gateways, "RemotePermit", self._permit)
+        monkeypatch.setattr(gateways, "monotonic", lambda: self.now)
+        for name in ("Controls", "Permit"):
+            monkeypatch.setattr(gateways, name, lambda *_, **__: QUIET)
+        site = SimpleNamespace(file=SimpleNamespace(machines=["zx200", "ic120"], pcs={}), border=lambda _: None)
+        Gateways(SimpleNamespace(ros=self.ros, pulse=None, site=site, log=QUIET), lambda _: None)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(gateways, "RemotePermit", made)
-    for name in ("Controls", "Permit"):
-        monkeypatch.setattr(gateways, name, lambda *_, **__: QUIET)
-    site = SimpleNamespace(file=SimpleNamespace(machines=["zx200", "ic120"], pcs={}), border=lambda _: None)
-    ros = FakeRos()
-    app: Any = SimpleNamespace(ros=ros, pulse=None, site=site, log=QUIET)
-    known = Gateways(app, lambda _: None)
-    stops = MachineStops(ros, known, lambda *_: None)  # type: ignore[arg-type]
-    state = ros.heard["/zx200/rc/state"]
+    def _permit(self, _ros: Any, _pulse: Any, machine: str, _kind: str, changed: Callable[[Any], None]) -> Any:
+        self.changed[machine] = changed
+        self.links[machine] = SimpleNamespace(alive=True, asserted=1, goal=b"serves")
+        return self.links[machine]
 
-    def asked(machine: str) -> tuple[bool, str]:
-        stops.stop(machine, Cancelled())
-        return ros.asked[-1].orderly, ros.asked[-1].cause
+    def press(self) -> None:
+        self.ros.heard["/emergency_signal"](Bool(data=True))
 
-    orderly, missed = (True, to_line(Cancelled())), (False, to_line(SoftwareStop()))
-    ros.heard["/emergency_signal"](Bool(data=False))
-    assert asked("zx200") == asked("ic120") == orderly
-    ros.heard["/emergency_signal"](Bool(data=True))
-    state(MachineState())
-    assert asked("zx200") == asked("ic120") == missed
-    state(MachineState(latch=to_line(SoftwareStop())))
-    assert asked("zx200") == orderly and asked("ic120") == missed
-    changed["zx200"](SimpleNamespace(alive=False, goal=b"serves"))  # so soon that its disk may not have it
-    assert asked("zx200") == missed
-    ros.heard["/emergency_signal"](Bool(data=True))
-    state(MachineState(latch=to_line(SoftwareStop())))
-    ros.heard["/emergency_signal"](Bool(data=True))  # somebody goes on pressing a machine that shows its latch
-    state(MachineState())
-    assert asked("zx200") == orderly, "it was re-armed"
-    state(MachineState(latch=to_line(SoftwareStop())))
-    changed["zx200"](SimpleNamespace(alive=False, goal=NOBODY))  # the next one has shown nothing yet
-    ros.heard["/emergency_signal"](Bool(data=True))
-    assert asked("zx200") == missed
-    monkeypatch.setattr(gateways, "monotonic", lambda: monotonic() + NOTED)
-    state(MachineState(latch=to_line(SoftwareStop())))
-    changed["zx200"](SimpleNamespace(alive=False, goal=b"serves"))
-    assert asked("zx200") == orderly
+    def shows(self, machine: str, latched: bool) -> list[str]:
+        """Its gateway tells its state; returns whom the scheduler has asked to stop since the last time."""
+        self.ros.asked.clear()
+        self.ros.heard[f"/{machine}/rc/state"](MachineState(latch=to_line(SoftwareStop()) if latched else ""))
+        return list(self.ros.asked)
+
+    def lose(self, machine: str, *, in_order: bool = False) -> None:
+        """Its gateway ends; the next one works at once."""
+        link = self.links[machine]
+        link.alive = False
+        self.changed[machine](SimpleNamespace(alive=False, goal=NOBODY if in_order else b"serves"))
+        link.alive = True
+
+
+@pytest.fixture
+def rig(monkeypatch: pytest.MonkeyPatch) -> Rig:
+    return Rig(monkeypatch)
+
+
+ASKED = ["/zx200/rc/stop"]
+
+
+def test_a_gateway_that_has_missed_a_press_is_told_of_it_without_a_run(rig: Rig) -> None:
+    assert rig.shows("zx200", latched=False) == []
+    rig.press()
+    assert rig.shows("zx200", latched=False) == [], "it may have heard the button itself"
+    rig.now += HANDED_ON
+    assert rig.shows("zx200", latched=False) == ASKED
+    assert rig.shows("zx200", latched=False) == [], "it has been asked just now"
+    assert rig.shows("ic120", latched=True) == []
+
+
+def test_a_release_of_the_button_is_no_press(rig: Rig) -> None:
+    rig.ros.heard["/emergency_signal"](Bool(data=False))
+    rig.now += HANDED_ON
+    assert rig.shows("zx200", latched=False) == []
+
+
+def test_a_press_is_over_when_its_machine_is_re_armed(rig: Rig) -> None:
+    rig.press()
+    assert rig.shows("zx200", latched=True) == []
+    rig.now += HANDED_ON
+    assert rig.shows("zx200", latched=False) == []
+
+
+@pytest.mark.parametrize("in_order", [True, False])
+def test_a_latch_of_a_gateway_that_is_lost_soon_after_may_not_be_on_its_disk(rig: Rig, in_order: bool) -> None:
+    rig.press()
+    rig.shows("zx200", latched=True)
+    rig.lose("zx200", in_order=in_order)
+    rig.now += HANDED_ON
+    assert rig.shows("zx200", latched=False) == ASKED
+
+
+def test_a_latch_that_is_shown_for_long_is_on_its_disk(rig: Rig) -> None:
+    rig.press()
+    rig.now += NOTED
+    rig.shows("zx200", latched=True)
+    rig.lose("zx200")
+    assert rig.shows("zx200", latched=False) == []
+
+
+def test_two_gateways_of_a_machine_are_not_asked(rig: Rig) -> None:
+    """Nobody knows which of them shows its latch."""
+    rig.press()
+    rig.now += HANDED_ON
+    rig.links["zx200"].asserted = 2
+    assert rig.shows("zx200", latched=False) == []
+    rig.links["zx200"].asserted = 1
+    assert rig.shows("zx200", latched=False) == ASKED
