@@ -36,7 +36,9 @@ class Engine:
 def script(name: str, *words: str, check: bool = True) -> subprocess.CompletedProcess[str]:
     """Run a script of `deploy`."""
     argv = ["sh", str(PROJECT / "deploy" / name), *words]
-    return subprocess.run(argv, env={**os.environ, "DOCKER": DOCKER}, capture_output=True, text=True, check=check)
+    done = subprocess.run(argv, env={**os.environ, "DOCKER": DOCKER}, capture_output=True, text=True, check=False)
+    assert done.returncode == 0 or not check, done.stderr[-2000:]
+    return done
 
 
 @pytest.fixture(scope="session")
