@@ -189,7 +189,7 @@ mutants: setup ## defects planted in the decisions one at a time; the simulation
 mutmut: setup ## hundreds of small changes of proof and latch; the unit tests must fail for 9 of 10, and the others be judged
 	@cd tests && $(abspath $(PY)) -m mutants.mutmut_run $(abspath $(VENV))/mutmut $(if $(filter-out auto,$(WORKERS)),--workers $(WORKERS))
 
-replay: setup ## twenty simulated plans on real processes, as root: both tell the same history (ONLY="gateway and killed": words of their names)
+replay: setup ## simulated plans on real processes, as root: both tell the same history (ONLY="gateway and killed": words of their names)
 	@DOCKER=$(DOCKER) sh deploy/system-packages.sh test
 	TMS_REPLAY=1 $(PY) -m pytest -p no:randomly tests/replay/test_replay.py $(if $(ONLY),-k "$(ONLY)")
 

@@ -85,6 +85,11 @@ PLANS = (
         (BEGIN, _moves(Kill(ONE, (GATEWAY,))), Step(AtOnce(), 0.2, Press()), REARM, *WORKS),
         Over("b"),
     ),
+    Plan(
+        "stop is pressed while gateway and host agent are away",
+        (BEGIN, _moves(Kill(ONE, (GATEWAY, HOST))), Step(AtOnce(), 0.2, Press()), REARM, *WORKS),
+        Over("b"),
+    ),
     Plan("the host agent is killed", (BEGIN, _moves(Kill(ONE, (HOST,)))), Over("a")),
     Plan(
         "a machine coasts",
