@@ -189,9 +189,9 @@ mutants: setup ## defects planted in the decisions one at a time; the simulation
 mutmut: setup ## hundreds of small changes of proof and latch; the unit tests must fail for 9 of 10, and the others be judged
 	@cd tests && $(abspath $(PY)) -m mutants.mutmut_run $(abspath $(VENV))/mutmut $(if $(filter-out auto,$(WORKERS)),--workers $(WORKERS))
 
-replay: setup ## simulated plans on real processes, as root: both tell the same history (ONLY="gateway and killed": words of their names)
+replay: setup ## simulated plans on real processes, as root: both tell the same history (ONLY="gateway and killed": words of their names; TURN=today: a seventh of them)
 	@DOCKER=$(DOCKER) sh deploy/system-packages.sh test
-	TMS_REPLAY=1 $(PY) -m pytest -p no:randomly tests/replay/test_replay.py $(if $(ONLY),-k "$(ONLY)")
+	TMS_REPLAY=1 $(PY) -m pytest -p no:randomly tests/replay/test_replay.py $(if $(TURN),--turn $(TURN)) $(if $(ONLY),-k "$(ONLY)")
 
 coverage: setup ## unit tests take every branch of the decisions and proofs
 	$(PY) -m coverage run --data-file=$(VENV)/coverage --branch --source tms_decision,tms_proof -m pytest -q tests/unit/tms_decision tests/unit/tms_proof tests/unit/tms_ts/test_interrupted.py

@@ -47,7 +47,7 @@ class RealSite:
     stalled: Callable[[], AbstractContextManager[None]]  # inside, nothing gets onto the disk
 
     def __post_init__(self) -> None:
-        self.observer = StopObserver(self.ros, self.site, ONE)
+        self.observer = StopObserver(self.ros, self.site, ONE, None)
         self.button = self.ros.publisher(Bool, "/emergency_signal")
         self._fault = self.ros.publisher(String, f"/{ONE}/sim/fault")
 

@@ -13,6 +13,7 @@ pytestmark = [pytest.mark.system, pytest.mark.timeout(300)]
 SEEDS = range(12)
 
 
+@pytest.mark.turns
 @pytest.mark.parametrize("plan", PLANS, ids=lambda plan: plan.name)
 def test_real_processes_tell_a_history_of_the_simulation(
     plan: Plan, real_site: RealSite, capsys: pytest.CaptureFixture[str]
