@@ -16,7 +16,6 @@ class Fault(Enum):
     IGNORES_STOPS = "does not obey any order to stop"
     SILENT = "tells nothing of its joints"
     FROZEN_STAMPS = "repeats its last message"
-    DRIFTS = "comes to stand later than any stop may take"
 
 
 # moments

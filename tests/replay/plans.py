@@ -86,9 +86,15 @@ PLANS = (
         Over("b"),
     ),
     Plan(
-        "stop is pressed while gateway and host agent are away",
-        (BEGIN, _moves(Kill(ONE, (GATEWAY, HOST))), Step(AtOnce(), 0.2, Press()), REARM, *WORKS),
-        Over("b"),
+        "stop is pressed between two runs, while gateway and host agent are away",
+        (
+            Step(AtOnce(), 0.5, Start("a", ONE, ("left",))),
+            Step(Over("a"), 0.5, Freeze(ONE, (HOST,), 15.0)),
+            Step(AtOnce(), 0.5, Kill(ONE, (GATEWAY,))),
+            Step(AtOnce(), 0.0, Press()),
+            Step(AtOnce(), 10.0, Rearm(ONE)),
+        ),
+        Answered(),
     ),
     Plan("the host agent is killed", (BEGIN, _moves(Kill(ONE, (HOST,)))), Over("a")),
     Plan(
@@ -106,19 +112,6 @@ PLANS = (
             Step(AtOnce(), 1.0, Rearm(ONE)),
         ),
         Answered(),
-    ),
-    Plan(
-        "a machine drifts",
-        (
-            Step(AtOnce(), 0.5, Start("a", ONE, ("far",))),
-            _moves(BeUnkind(ONE, Fault.DRIFTS)),
-            Step(AtOnce(), 0.2, Press()),
-            Step(Over("a"), 0.5, Rearm(ONE)),
-            Step(Answered(), 0.0, BeUnkind(ONE, None)),
-            Step(AtOnce(), 8.0, Rearm(ONE)),
-            *WORKS,
-        ),
-        Over("b"),
     ),
     Plan(
         "a machine repeats its last message",

@@ -27,13 +27,11 @@ SUBTASK = "subtask_zx200_change_pose"
 SWINGS = {
     "left": 2.5,
     "right": 0.5,
-    "far": 3.0,
 }  # rad, long enough for a busy PC, from where the machine stands at the begin
 FAULTS: Mapping[a.Fault, Mapping[str, Any]] = {
     a.Fault.COASTS: {"coast": 2.0},
     a.Fault.IGNORES_STOPS: {"ignore_cancel": True, "ignore_emg_stop": True},
     a.Fault.FROZEN_STAMPS: {"frozen_stamp": True},
-    a.Fault.DRIFTS: {"drift": 0.05},
 }
 
 

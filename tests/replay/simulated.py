@@ -26,14 +26,13 @@ from tms_ts.reasons import MachineBusy
 
 LOOK = 0.02  # s
 STILL = 0.01  # rad/s, of the machines of the simulation
-SWINGS = {"left": 6.0, "right": 6.0, "far": 20.0}  # s
+SWINGS = {"left": 6.0, "right": 6.0}  # s
 READY = 5.0  # s until all processes have found each other
 BACK = 1.2  # s until a killed process is started again
 FAULTS = {
     a.Fault.COASTS: Fault(coast=2.0),
     a.Fault.IGNORES_STOPS: Fault(ignore_cancel=True, ignore_emergency=True),
     a.Fault.SILENT: Fault(mute=True),
-    a.Fault.DRIFTS: Fault(coast=18.0),
     a.Fault.FROZEN_STAMPS: Fault(frozen_stamp=True),
 }
 PERSON, LITTLE, PRESSED = "Sato", 1.5, 0.3  # s of a motion that a stranger asks for; s that the button is pressed

@@ -73,7 +73,7 @@ def test_a_gateway_that_looks_at_no_permit_has_another_history(monkeypatch: pyte
 def test_a_gateway_that_believes_everything_has_another_history(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(StandStill, "proven", lambda self, proof, now: True)
     with pytest.raises(Violation, match="truly moving"):
-        Simulated(plan("a machine drifts"), 1).run()
+        Simulated(plan("a machine coasts"), 1).run()
 
 
 def test_a_press_that_does_not_latch_has_another_history(monkeypatch: pytest.MonkeyPatch) -> None:
