@@ -61,6 +61,7 @@ class Struck:
     hit: "Future[float]" = field(default_factory=Future)  # s since 1970
     back: "Future[float | None]" = field(default_factory=Future)  # s from the hit
     processes: tuple[str, ...] = ()  # that are hit
+    chosen: float = math.inf  # when those were chosen, s since 1970
     started: dict[str, float] = field(default_factory=dict)  # when those that were killed were seen again, s since 1970
 
 
@@ -135,6 +136,7 @@ class Hand:
             struck.hit.set_result(power_off(pids))
             struck.back.set_result(self._hits.power_on(pids, struck.hit.result(), struck.started))
         else:
+            struck.chosen = unix_time()
             found = self._hits.pids(self._hits.names(stop, {hand.machine: hand.work.subtask for hand in hands}))
             struck.processes = tuple(found)
             until(at)
@@ -169,7 +171,8 @@ class Hand:
         self._note_history(trial, struck)
         stops = [one.begun for one in record.receipts]
         busy = "" if stop.moves else stood_still(self._site, self.machine, stops)
-        row = judge(TrialFacts(trial, self.model, record, begun, hit, stopped, self._ends, back, outcome, busy))
+        facts = trial, self.model, record, begun, hit, stopped, self._ends, back, outcome, busy, struck.chosen
+        row = judge(TrialFacts(*facts))
         if row.false_receipt or (row.unconfirmed and row.in_order) or row.ran_on:
             self._keep(record, hit)
         return row

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from tms_cli.drill.plan import NONE, RC, TS, How, StopScenario, Trial
+from tms_cli.drill.plan import NONE, RC, SUBTASK, TS, How, StopScenario, Trial
 from tms_cli.drill.record import Goal, MotionSample, Receipt, ReportedState, TrialRecording, sample_of
 from tms_cli.drill.verdict import GOES_ON, UNTOLD, Row, TrialFacts, judge
 from tms_config.models import Still
@@ -175,6 +175,18 @@ def test_a_motion_that_had_ended_by_itself_proves_nothing() -> None:
     assert judge(found).void == "its motion ended by itself" and wrong(judge(found)) == set()
     found.record.goals[b"1"] = Goal(HIT - 5.0, HIT + 4.0, arrived=True)  # nobody stopped it
     assert judge(found).void == "" and wrong(judge(found)) == {"unconfirmed", "unlatched"}
+
+
+def test_a_subtask_that_was_hit_after_its_goal_proves_nothing() -> None:
+    """The drill had chosen the subtask of the last motion, and the next one began before the hit."""
+    subtask = StopScenario(How.KILL, (SUBTASK,))
+    found = facts(truth((0.0, 6.0)), stop_kind=subtask, chosen=HIT - 1.5)
+    assert "began just before the hit" in judge(found).void and wrong(judge(found)) == set()
+    for chosen, kind in ((HIT - 0.5, subtask), (HIT - 1.5, KILL)):
+        valid = facts(truth((0.0, 6.0)), stop_kind=kind, chosen=chosen)
+        assert judge(valid).void == "" and wrong(judge(valid))
+    stopped = facts(truth((0.0, 1.0)), receipt(), stop_kind=subtask, chosen=HIT - 1.5)
+    assert judge(stopped).void == "" and wrong(judge(stopped)) == set()
 
 
 def test_a_machine_that_was_stopped_before_proves_nothing() -> None:
