@@ -67,8 +67,7 @@ class StandbyGateway:
         """Command what is due, at every beat of the pulse."""
         lost, press = self.duty.lost_since is not None, self._press
         reported = self._samples() if lost or press.since is not None or not self._gateway.alive else []
-        alone = self._gateway.alive and self._gateway.asserted < 2  # of two, nobody knows which shows its latch
-        if press.due(now, alone, bool(reported[-1].latch) if reported else None):
+        if press.due(now, self._gateway.alone, bool(reported[-1].latch) if reported else None):
             self._ros.on_executor(self._hand_on)
         act = self.duty.check(now, self._status(now, reported))
         if act is not None:

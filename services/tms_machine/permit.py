@@ -84,14 +84,14 @@ class RemotePermit:
         return self._link.stale_writers
 
     @property
-    def asserted(self) -> int:
-        """How many processes assert it: more than one is a mistake, or the first moment after a restart."""
-        return self._link.asserted
-
-    @property
     def alive(self) -> bool:
         """Whether the process works for `goal` now."""
         return self._link.alive(monotonic())
+
+    @property
+    def alone(self) -> bool:
+        """Whether it is alive and the only one: of two, nobody knows which has told what is heard."""
+        return self.alive and self._link.asserted < 2
 
     def lost(self, goal: bytes) -> bool:
         """Whether the process was lost while it worked for `goal`: its successor may take the next one unheard."""

@@ -17,7 +17,6 @@ from tms_machine.permit import Permit, RemotePermit
 from tms_machine.reasons import NoReason
 from tms_reason import wire
 from tms_reason.reason import Reason
-from tms_reason.wire import to_line
 from tms_runtime.app import App
 from tms_runtime.fence import goal_id
 from tms_schedulers.names import schedulers
@@ -145,8 +144,7 @@ class Gateways:
 
     def _state(self, machine: str, state: MachineState) -> None:
         self._states[machine] = state
-        alone = self._gateways[machine].alive and self._gateways[machine].asserted < 2
-        if self._presses[machine].due(monotonic(), alone, bool(state.latch)):
+        if self._presses[machine].due(monotonic(), self._gateways[machine].alone, bool(state.latch)):
             self._hand_on(machine)
         holder = self._holders.get(machine)
         if holder is not None and state.latch:
@@ -169,7 +167,7 @@ class Gateways:
     def _hand_on(self, machine: str) -> None:
         """Tell a gateway of a press that it does not know, also if its host agent was away as well."""
         self._app.log.error("press_handed_on", machine=machine)
-        request = StopMachine.Request(cause=to_line(SoftwareStop()), orderly=False)
+        request = StopMachine.Request(cause=wire.to_line(SoftwareStop()), orderly=False)
         self._app.ros.call_then(StopMachine, f"/{machine}/rc/stop", request, _told)
 
     def _gateway_changed(self, machine: str, gateway: RemotePermit) -> None:

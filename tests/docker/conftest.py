@@ -20,12 +20,11 @@ class Engine:
     """The Docker engine: where none answers, one is started."""
 
     def __init__(self) -> None:
-        self._pid = script("engine.sh").stdout.strip()  # empty: not ours
+        self.start()
 
-    def again(self) -> None:
-        """Start it again after it has ended by itself."""
-        self.stop()
-        self._pid = script("engine.sh").stdout.strip()
+    def start(self) -> None:
+        """Start one where none answers."""
+        self._pid = script("engine.sh").stdout.strip()  # empty: not ours
 
     def stop(self) -> None:
         """End it, if it is ours; one that has ended by itself tells why."""
@@ -56,7 +55,8 @@ def image(engine: Engine) -> None:
     """The image with the embedded store, of this checkout."""
     done = script("image.sh", IMAGE, "demo", check=False)
     if "error during connect" in done.stderr:  # Docker 20.10 may crash as it reads its cache: moby/buildkit#2861
-        engine.again()
+        engine.stop()
+        engine.start()
         done = script("image.sh", IMAGE, "demo", check=False)
     assert done.returncode == 0, done.stderr[-2000:]
 

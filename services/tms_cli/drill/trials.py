@@ -171,8 +171,9 @@ class Hand:
         self._note_history(trial, struck)
         stops = [one.begun for one in record.receipts]
         busy = "" if stop.moves else stood_still(self._site, self.machine, stops)
-        facts = trial, self.model, record, begun, hit, stopped, self._ends, back, outcome, busy, struck.chosen
-        row = judge(TrialFacts(*facts))
+        row = judge(TrialFacts(
+            trial, self.model, record, begun, hit, stopped, self._ends, back, outcome, busy, struck.chosen
+        ))  # fmt: skip
         if row.false_receipt or (row.unconfirmed and row.in_order) or row.ran_on:
             self._keep(record, hit)
         return row

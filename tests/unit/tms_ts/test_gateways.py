@@ -72,7 +72,7 @@ class Rig:
 
     def _permit(self, _ros: Any, _pulse: Any, machine: str, _kind: str, changed: Callable[[Any], None]) -> Any:
         self.changed[machine] = changed
-        self.links[machine] = SimpleNamespace(alive=True, asserted=1, goal=b"serves")
+        self.links[machine] = SimpleNamespace(alone=True)
         return self.links[machine]
 
     def press(self) -> None:
@@ -87,9 +87,9 @@ class Rig:
     def lose(self, machine: str, *, in_order: bool = False) -> None:
         """Its gateway ends; the next one works at once."""
         link = self.links[machine]
-        link.alive = False
+        link.alone = False
         self.changed[machine](SimpleNamespace(alive=False, goal=NOBODY if in_order else b"serves"))
-        link.alive = True
+        link.alone = True
 
 
 @pytest.fixture
@@ -144,7 +144,7 @@ def test_two_gateways_of_a_machine_are_not_asked(rig: Rig) -> None:
     """Nobody knows which of them shows its latch."""
     rig.press()
     rig.now += HANDED_ON
-    rig.links["zx200"].asserted = 2
+    rig.links["zx200"].alone = False
     assert rig.shows("zx200", latched=False) == []
-    rig.links["zx200"].asserted = 1
+    rig.links["zx200"].alone = True
     assert rig.shows("zx200", latched=False) == ASKED
