@@ -1,6 +1,7 @@
 """The scene of a machine: the other machines of the site; one that has told no place is no obstacle."""
 
 import itertools
+import threading
 
 import numpy as np
 
@@ -29,7 +30,8 @@ class Neighbours:
         self._bodies = {name: Neighbour(name, model) for name, model in models.items()}
         jointed = [name for name, model in models.items() if model.shapes]
         self._listener = Listener(app.ros, app.site, app.site.file.machines, jointed)
-        app.ros.poll_in_thread(PERIOD, self._listener.take, "neighbours")
+        self._taking = threading.Lock()  # a listener is for one thread
+        app.ros.poll_in_thread(PERIOD, self._take, "neighbours")
 
     def unready(self) -> Reason | None:
         """Why it is not known where this machine stands, if its pose should tell it and others may be near."""
@@ -45,6 +47,7 @@ class Neighbours:
         """
         if not self._others:
             return Scene()
+        self._take()  # a machine may have moved since the last time, and another have said that it has arrived
         if missing := self.unready():
             raise SubtaskFailed(missing)
         own = self._listener.places.place(self._own)
@@ -61,6 +64,10 @@ class Neighbours:
             for name, place in places.items()
         ]
         return Scene(tuple(itertools.chain.from_iterable(found)))
+
+    def _take(self) -> None:
+        with self._taking:
+            self._listener.take()
 
     def _posture(self, name: str, now: float, as_told: bool) -> Posture | None:
         told = self._listener.joints(name)

@@ -34,6 +34,16 @@ ASKING = """<root main_tree_to_execute="MainTree"><BehaviorTree ID="MainTree">
 """
 
 
+MOVED = """([box, told]) => {
+    const button = document.querySelector(`${box} .stop`);
+    const at = () => { const found = button.getBoundingClientRect(); return [found.x, found.y]; };
+    const [x, y] = at(), long = document.createElement("span");
+    long.textContent = "It waits for something that is said in many words. ".repeat(9);
+    document.querySelector(`${box} ${told}`).prepend(long);
+    const [now_x, now_y] = at();
+    long.remove();
+    return Math.hypot(now_x - x, now_y - y);
+}"""  # px that a red button is moved by words that come
 LOOK = """hidden => {
     Object.defineProperty(document, "hidden", { configurable: true, get: () => hidden });
     document.dispatchEvent(new Event("visibilitychange"));
@@ -134,6 +144,8 @@ def arm_and_run_again(page: Page, address: str) -> None:
     rearm(page)
     start(page, SWINGS)
     expect(page.locator("#list_active li")).to_have_count(1)
+    for box, told in (("#list_active li", "[data-part=reason]"), ("[data-machine=zx200]", ".badge")):
+        assert page.evaluate(MOVED, [box, told]) == 0  # a click has two ends, and words come between them, too
     page.get_by_role("button", name="Cancel run").click()
     expect(page.locator("#list_active li")).to_have_count(0)
 

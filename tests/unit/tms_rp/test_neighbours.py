@@ -70,6 +70,14 @@ def test_the_other_is_seen_from_here_also_through_odom() -> None:
     assert obstacle.place[0, 3] == pytest.approx(7.0)
 
 
+def test_what_was_told_since_the_listening_thread_slept_counts() -> None:
+    reported = at("ic120_tf/base_link", 10.0)
+    made = neighbours(at("base_link", 0.0), reported)
+    reported.transform.translation.x = 3.0  # says the next message
+    (obstacle,) = made.scene().obstacles
+    assert obstacle.place[0, 3] == 3.0
+
+
 def test_a_place_that_is_not_a_number_leaves_the_machine_where_it_was() -> None:
     bad = [at("ic120_tf/base_link", value) for value in (float("nan"), float("inf"))]
     (obstacle,) = neighbours(at("base_link", 0.0), at("ic120_tf/base_link", 7.0), *bad).scene().obstacles

@@ -34,17 +34,20 @@ function Row({ run }: { run: ActiveRun }) {
       <strong>
         {t("task")} {run.task_id}
       </strong>
-      <Badge state={run.state} />
-      <span>{run.machines.join(", ")}</span>
-      <span data-part="reason">
-        <Said reason={run.reason} text={run.reason ? said(run.reason) + since : ""} done="cancel" />
-      </span>
       <a className="button" href={`#tree/${encodeURIComponent(run.run_id)}`}>
         {t("p_tree")}
       </a>
       <Command className="stop" label={t("cancel_run", { id: run.run_id })} work={() => cancelRun(run.run_id)}>
         {t("cancel")}
       </Command>
+      {/* On lines of its own: what changes must not move a button from under a pointer. */}
+      <div className="told">
+        <Badge state={run.state} />
+        <span>{run.machines.join(", ")}</span>
+        <span data-part="reason">
+          <Said reason={run.reason} text={run.reason ? said(run.reason) + since : ""} done="cancel" />
+        </span>
+      </div>
     </li>
   );
 }

@@ -26,7 +26,13 @@ export function MachineCard({ machine, run }: Props) {
   const { name } = machine;
   return (
     <article className="card machine_card" data-machine={name} data-armed={armedState(machine)}>
-      <h3>{name}</h3>
+      <div className="machine_head">
+        <h3>{name}</h3>
+        {/* Above all that changes, which must not move it from under a pointer. */}
+        <button type="button" className="stop" aria-label={t("stop_machine", { name })} onClick={() => stop(name)}>
+          {t("stop_one")}
+        </button>
+      </div>
       <Badge state={machine.state} />
       {machine.state !== "silent" && <Badge state={armedState(machine)} />}
       <Why machine={machine} run={run} />
@@ -49,9 +55,6 @@ export function MachineCard({ machine, run }: Props) {
             {t("give_back")}
           </Command>
         )}
-        <button type="button" className="stop" aria-label={t("stop_machine", { name })} onClick={() => stop(name)}>
-          {t("stop_one")}
-        </button>
       </div>
       <Joints joints={machine.joints} />
     </article>
