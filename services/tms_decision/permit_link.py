@@ -22,8 +22,7 @@ class PermitLink:
     doubted: float | None = None  # since when it may be lost: its assertions may have come, but not been handled yet
 
     def alive(self, now: float) -> bool:
-        """Whether the process works for `goal` now."""
-        # A message may be handled before the report that its writer is asserted again.
+        """Whether the process works for `goal` now; its message may come before the report that it is asserted."""
         return self.goal != NOBODY and (self.asserts or now - self.received < LEASE)
 
     def heard(self, goal: bytes, holder: str, now: float) -> None:
@@ -43,7 +42,9 @@ class PermitLink:
             self._lose()
 
     def judge(self, now: float) -> bool:
-        """Whether a doubted process counts as lost from now on."""
+        """Whether a doubted process counts as lost from now on; one whose message nobody asserts is doubted."""
+        if self.doubted is None and not self.asserts and LEASE <= now - self.received < float("inf"):
+            self.doubted = now
         if self.doubted is None or now - self.doubted < GRACE:
             return False
         self._lose()

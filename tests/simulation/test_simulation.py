@@ -95,6 +95,11 @@ def test_a_restarted_gateway_and_its_scheduler_that_are_lost_together_leave_the_
     assert Schedule(20408093).run().violation == ""
 
 
+def test_a_run_whose_scheduler_was_killed_right_after_it_told_of_it_is_lost() -> None:
+    """A restarted gateway had its message, and no report that it was asserted; the next run took the machine."""
+    assert Schedule(20767120).run().violation == ""
+
+
 @pytest.mark.parametrize("seed", [31292, 16912990, 2912419538, 1277639756])
 def test_a_motion_that_no_source_has_shown_is_waited_for(seed: int) -> None:
     """A stranger cancelled it, and the machine went on and replayed its record of before, in which it stood.

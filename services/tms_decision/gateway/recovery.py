@@ -68,14 +68,13 @@ def _take_over(gateway: Gateway, now: float, run: int) -> None:
 
 
 def _begin(gateway: Gateway, now: float, run: int) -> None:
-    recovery, number = gateway.recovery, 0 if run == UNKNOWN_RUN else run
-    recovery.stop = stops.stop(gateway, now, recovery.cause, StopKind.PLAIN, run=number, expected=UNKNOWN)
+    cause, number = gateway.recovery.cause, 0 if run == UNKNOWN_RUN else run
+    gateway.recovery.stop = stops.stop(gateway, now, cause, StopKind.PLAIN, run=number, expected=UNKNOWN)
 
 
 def _close(gateway: Gateway, now: float) -> None:
     """End the wait for a run; latch if a motion was stopped and no run has reported itself."""
     recovery = gateway.recovery
-    known = gateway.latch.cause is not None or gateway.active is not None
-    if recovery.open and recovery.stop is not None and not known:
+    if recovery.open and recovery.stop is not None and gateway.latch.cause is None and gateway.active is None:
         stops.stop(gateway, now, NoRunTold(recovery.cause), StopKind.LATCH, run=recovery.run, expected=UNKNOWN)
     recovery.open = False
