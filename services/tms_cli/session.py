@@ -20,7 +20,6 @@ from tms_reason.reason import Foreign
 from tms_runtime import environment, state_folder
 from tms_runtime.priority import undisturbed
 from tms_schedulers import asking
-from tms_schedulers.names import schedulers
 
 if TYPE_CHECKING:
     from tms_msg_ts.msg import RunStates
@@ -29,7 +28,6 @@ if TYPE_CHECKING:
 
 CALL_LIMIT = 10.0  # s; on a full PC, discovery of a process that is there has taken more than 5
 LATCHED_LIMIT = 5.0  # s for the latched state of a module to arrive
-OTHERS_LIMIT = 1.0  # s for other schedulers, once the first has told of its runs
 leaving = ExitStack()  # leaves the ROS graph; closed at the end of this process, since DDS sometimes hangs there
 
 
@@ -111,24 +109,11 @@ def of_any(
     return asking.of_any(where, lambda one: call(node, service_type, one.named(name), **fields), unknown)
 
 
-def runs(node: "Ros", seconds: float = LATCHED_LIMIT) -> "RunStates | None":
-    """The active runs and open questions of all schedulers; None if none of them tells any within `seconds`."""
-    from tms_schedulers.hearing import hear_runs
+def runs(node: "Ros", seconds: float = LATCHED_LIMIT, wanted: str = "") -> "RunStates | None":
+    """The active runs and open questions of all schedulers, as `wait_for_runs` finds them."""
+    from tms_schedulers.hearing import wait_for_runs
 
-    told: list[RunStates] = []
-    heard = threading.Condition()
-
-    def receive(message: "RunStates") -> None:
-        with heard:
-            told.append(message)
-            heard.notify_all()
-
-    hear_runs(node, site(), receive)
-    every = len(schedulers(site()))
-    with heard:
-        if heard.wait_for(lambda: told, seconds):
-            heard.wait_for(lambda: len(told) >= every, OTHERS_LIMIT)
-        return told[-1] if told else None
+    return wait_for_runs(node, site(), seconds, wanted)
 
 
 def show_json(data: Any) -> None:

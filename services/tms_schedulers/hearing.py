@@ -1,5 +1,6 @@
 """The active runs of all schedulers of a site, as one list."""
 
+import threading
 from collections.abc import Callable
 from functools import partial
 
@@ -21,6 +22,11 @@ class Lists:
 
     def put(self, scheduler: str, message: RunStates) -> None:
         self._told[scheduler] = message, monotonic()
+
+    @property
+    def count(self) -> int:
+        """How many have told anything."""
+        return len(self._told)
 
     def merged(self) -> RunStates:
         """The lists of all that are there, as one message."""
@@ -58,3 +64,25 @@ def sample_runs(ros: Ros, site: Site) -> Callable[[], RunStates | None]:
         return lists.merged() if arrived else None
 
     return take
+
+
+def wait_for_runs(ros: Ros, site: Site, seconds: float, wanted: str = "") -> RunStates | None:
+    """What all schedulers tell, or those that have told anything within `seconds`; `wanted`: a run that is enough.
+
+    None if none of these has a run, and one has told nothing: nobody knows whether that one has any.
+    """
+    lists, heard, every = Lists(), threading.Condition(), schedulers(site)
+
+    def received(scheduler: str, message: RunStates) -> None:
+        with heard:
+            lists.put(scheduler, message)
+            heard.notify_all()
+
+    def enough() -> bool:
+        return lists.count == len(every) or any(run.run_id == wanted for run in lists.merged().runs)
+
+    for one in every:
+        ros.subscribe(RunStates, one.named("runs"), partial(received, one.process), latched=True)
+    with heard:
+        complete, told = heard.wait_for(enough, seconds), lists.merged()
+    return told if complete or told.runs else None

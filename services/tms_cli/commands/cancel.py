@@ -24,7 +24,7 @@ def _which(node: "Ros", word: str) -> str:
     """The id of the run, from the scheduler: a cancel must not wait for the database, which knows of ended ones."""
     from tms_machine import stamps
 
-    told = session.runs(node, session.CALL_LIMIT)
+    told = session.runs(node, session.CALL_LIMIT, word)
     active = [] if told is None else sorted(told.runs, key=lambda run: stamps.seconds(run.started_at), reverse=True)
     if word == "last" and not active:
         raise RosError(SchedulerSilent(), "NO_ANSWER") if told is None else TmsError(NoRunActive(), "NO_RUN")

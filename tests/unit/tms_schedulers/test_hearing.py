@@ -1,5 +1,6 @@
 """Runs of several schedulers as one list; those of one that has gone silent are not in it for long."""
 
+import threading
 from collections.abc import Callable
 from types import SimpleNamespace
 from typing import Any
@@ -8,7 +9,7 @@ import pytest
 from tms_msg_ts.msg import Question, RunState, RunStates
 
 from tms_schedulers import hearing
-from tms_schedulers.hearing import QUIET, hear_runs, sample_runs
+from tms_schedulers.hearing import QUIET, hear_runs, sample_runs, wait_for_runs
 from tms_schedulers.names import Scheduler
 
 EVERY = (Scheduler("tms:ts", frozenset()), Scheduler("tms:ts_e", frozenset(), "/tms/ts_e"))
@@ -67,3 +68,30 @@ def test_samples_of_all(clock: Clock) -> None:
     clock.now += QUIET
     waiting["/tms/runs"] = [told("a")]
     assert names(take()) == ["a"]
+
+
+def waited(topics: dict[str, list[RunStates]], later: dict[str, RunStates], wanted: str = "") -> RunStates | None:
+    """For schedulers of which some have told these messages, and others tell theirs after the call has begun."""
+
+    def subscribe(_: Any, topic: str, hear: Callable[[RunStates], None], latched: bool) -> None:
+        for message in topics.get(topic, []):
+            hear(message)
+        if topic in later:
+            threading.Timer(0.05, hear, [later[topic]]).start()
+
+    return wait_for_runs(SimpleNamespace(subscribe=subscribe), SITE, 5.0 if later else 0.0, wanted)  # type: ignore[arg-type]
+
+
+def test_one_that_tells_twice_does_not_stand_for_another(clock: Clock) -> None:
+    found = waited({"/tms/ts_e/runs": [told("c-e"), told()]}, {"/tms/runs": told("a")})
+    assert names(found) == ["a"]
+
+
+def test_while_one_has_told_nothing_nobody_says_that_no_run_is_active(clock: Clock) -> None:
+    assert waited({"/tms/ts_e/runs": [told()]}, {}) is None
+    assert names(waited({"/tms/ts_e/runs": [told("c-e")]}, {})) == ["c-e"]
+    assert names(waited({"/tms/ts_e/runs": [told()], "/tms/runs": [told()]}, {})) == []
+
+
+def test_the_run_that_is_wanted_is_enough(clock: Clock) -> None:
+    assert names(waited({"/tms/ts_e/runs": [told("c-e")]}, {}, "c-e")) == ["c-e"]
