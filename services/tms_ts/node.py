@@ -22,6 +22,7 @@ from tms_ts.interrupted import Interrupted
 from tms_ts.journal import Journal
 from tms_ts.leases import Leases
 from tms_ts.numbers import Numbers
+from tms_ts.other_runs import OtherRuns
 from tms_ts.permissions import Permissions
 from tms_ts.place_requests import PlaceRequests
 from tms_ts.reasons import NoQuestion, NoRun, SchedulerStopped
@@ -65,7 +66,7 @@ def _parts(app: App) -> Parts:
     monitors = Monitors(app.log, site.file.groot.bind, site.file.ports.groot)
     numbers, shared = Numbers(site.state, disk), SharedRecords(ros)
     check, publisher = (
-        TaskCheck(app, runs, gateways, places.site),
+        TaskCheck(app, runs, OtherRuns(app, leases.scheduler), gateways, places.site),
         RunsPublisher(ros, runs, leases.scheduler.named("runs")),
     )
     return Parts(

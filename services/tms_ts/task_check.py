@@ -16,6 +16,7 @@ from tms_runtime.app import App
 from tms_ts import bt
 from tms_ts.active_runs import ActiveRuns
 from tms_ts.gateways import Gateways
+from tms_ts.other_runs import OtherRuns
 from tms_ts.place_check import check_places, leaves_of
 from tms_ts.preflight import Findings, at, preflight
 from tms_ts.reasons import MachineBusy
@@ -27,8 +28,9 @@ DB_LIMIT = 5.0  # s
 class TaskCheck:
     """Reads tasks from the database and checks them against the site as it is now."""
 
-    def __init__(self, app: App, runs: ActiveRuns, gateways: Gateways, places: SitePlaces) -> None:
-        self._app, self._runs, self._gateways, self._places = app, runs, gateways, places
+    def __init__(self, app: App, runs: ActiveRuns, others: OtherRuns, gateways: Gateways, places: SitePlaces) -> None:
+        self._app, self._runs, self._others = app, runs, others
+        self._gateways, self._places = gateways, places
         self._sensing = SensingInputs(app)
         for machine in app.site.file.machines:
             if app.site.model_of(machine).planner is not None:
@@ -97,13 +99,17 @@ class TaskCheck:
         """`present`: also report why machines may not move now; a run is refused for that later."""
         problem = self._problem if present else _no_problem
         site = self._app.site
-        around = PreflightContext(self._app, self._sensing, problem, self._runs.writes, motions)
+        around = PreflightContext(self._app, self._sensing, problem, self._written, motions)
         found = preflight(tree, site, around)
         if leaves_of(tree):
-            about = check_places(tree, site, self._known_places(), self._runs.orders())
+            orders = {**self._others.orders(), **self._runs.orders()}  # no machine is in runs of both
+            about = check_places(tree, site, self._known_places(), orders)
             found.errors += about.errors
             found.warnings += about.warnings
         return found
+
+    def _written(self, record: str, field: str) -> bool:
+        return self._runs.writes(record, field) or self._others.writes(record, field)
 
     def _known_places(self) -> tuple[str, ...]:
         """The places of the site; waits a moment for their keeper, which this process may have found just now."""

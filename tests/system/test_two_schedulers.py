@@ -25,7 +25,12 @@ PCS = {
 MACHINES = {"zx200": {"model": "zx200"}, "east_zx200": {"model": "zx200", "start": [20.0, 0.0, 0.0]}}
 LEAF = '<Action ID="LeafNodeZx200" model_name="{}" record_name="swing_left" subtask_name="subtask_zx200_change_pose"/>'
 TREE = '<root main_tree_to_execute="M"><BehaviorTree ID="M"><Sequence>{}</Sequence></BehaviorTree></root>'
-MINE, THEIRS, BOTH = "1", "2", "3"
+WRITE = '<Action ID="MongoValueWriter" input_value="true" mongo_record_name="MEETING" mongo_param_name="READY"/>'
+WAIT = """<RetryUntilSuccessful num_attempts="-1"><Sequence>
+  <Action ID="BlackboardValueReaderMongo" output_port="R" mongo_record_name="MEETING" mongo_param_name="READY"/>
+  <Action ID="ConditionalExpression" conditional_expression="R == true"/>
+</Sequence></RetryUntilSuccessful>"""
+MINE, THEIRS, BOTH, WAITING = "1", "2", "3", "4"
 
 
 @dataclass
@@ -83,9 +88,13 @@ def _prepare(made: Cps, folder: Path) -> None:
     (folder / "east.yaml").write_text(records.replace("model_name: zx200", "model_name: east_zx200"))
     made.tms("param", "load", str(DATA / "swings.yaml"))
     made.tms("param", "load", str(folder / "east.yaml"))
-    (folder / "east.xml").write_text(swings.replace('model_name="zx200"', 'model_name="east_zx200"'))
+    (folder / "meeting.yaml").write_text("- {record_name: MEETING, type: dynamic, description: test, READY: false}\n")
+    made.tms("param", "load", str(folder / "meeting.yaml"))
+    theirs = swings.replace('model_name="zx200"', 'model_name="east_zx200"').replace("<Sequence>", f"<Sequence>{WRITE}")
+    (folder / "east.xml").write_text(theirs)
+    (folder / "waiting.xml").write_text(TREE.format(WAIT + LEAF.format("zx200")))
     (folder / "both.xml").write_text(TREE.format(LEAF.format("zx200") + LEAF.format("east_zx200")))
-    for file in (DATA / "many_swings.xml", folder / "east.xml", folder / "both.xml"):
+    for file in (DATA / "many_swings.xml", folder / "east.xml", folder / "both.xml", folder / "waiting.xml"):
         made.tms("task", "add", str(file))
 
 
@@ -108,6 +117,15 @@ def test_a_machine_that_the_other_scheduler_has_is_not_to_be_had(site: Cps) -> N
     assert f"east_zx200 is in run {theirs} of {EAST}" in refused
     site.tms("cancel", theirs)
     wait_until(lambda: site.tms("run", BOTH, "--wait", expect=None).returncode == 0, 30, "it was given back", every=CLI)
+
+
+def test_what_a_run_of_the_other_scheduler_writes_may_be_waited_for(site: Cps) -> None:
+    lonely = "no active task and no sensing input writes READY"
+    checked = lambda: site.tms("task", "check", WAITING, expect=None).stdout  # noqa: E731
+    wait_until(lambda: lonely in checked(), 30, "nobody writes it", every=CLI)
+    theirs = site.begin(THEIRS)
+    wait_until(lambda: lonely not in checked(), 30, "their run writes it", every=CLI)
+    site.tms("cancel", theirs)
 
 
 def test_without_its_scheduler_a_machine_is_the_main_ones_and_the_lost_run_is_resumed(site: Cps) -> None:
