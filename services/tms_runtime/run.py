@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from tms_runtime.app import App
 
 END_CHECK_PERIOD = 0.5  # s
-FORGOTTEN = 3.0  # s; lease of discovery (5 s) less the time since the last announcement (1.5 s at most), 0.5 s to spare
+FORGOTTEN = 3.0  # s; lease of discovery (5 s) less the age of the last announcement (1.75 s at most), 0.25 s to spare
 EXIT_LIMIT = 2.0  # s from SIGTERM to the end, even if the clean-up hangs
 PR_SET_PDEATHSIG = 1
 # Nice and real-time priority of processes that must not miss a beat on a busy PC, nor a beat of others, once they have
