@@ -48,8 +48,7 @@ def hear_runs(ros: Ros, site: Site, heard: Callable[[RunStates], None]) -> None:
         lists.put(scheduler, message)
         heard(lists.merged())
 
-    for one in schedulers(site):
-        ros.subscribe(RunStates, one.named("runs"), partial(received, one.process), latched=True)
+    _hear(ros, site, received)
 
 
 def sample_runs(ros: Ros, site: Site) -> Callable[[], RunStates | None]:
@@ -71,7 +70,7 @@ def wait_for_runs(ros: Ros, site: Site, seconds: float, wanted: str = "") -> Run
 
     None if none of these has a run, and one has told nothing: nobody knows whether that one has any.
     """
-    lists, heard, every = Lists(), threading.Condition(), schedulers(site)
+    lists, heard, every = Lists(), threading.Condition(), len(schedulers(site))
 
     def received(scheduler: str, message: RunStates) -> None:
         with heard:
@@ -79,10 +78,14 @@ def wait_for_runs(ros: Ros, site: Site, seconds: float, wanted: str = "") -> Run
             heard.notify_all()
 
     def enough() -> bool:
-        return lists.count == len(every) or any(run.run_id == wanted for run in lists.merged().runs)
+        return lists.count == every or any(run.run_id == wanted for run in lists.merged().runs)
 
-    for one in every:
-        ros.subscribe(RunStates, one.named("runs"), partial(received, one.process), latched=True)
+    _hear(ros, site, received)
     with heard:
         complete, told = heard.wait_for(enough, seconds), lists.merged()
     return told if complete or told.runs else None
+
+
+def _hear(ros: Ros, site: Site, received: Callable[[str, RunStates], None]) -> None:
+    for one in schedulers(site):
+        ros.subscribe(RunStates, one.named("runs"), partial(received, one.process), latched=True)

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 
 from tms_places.waits import Order
 from tms_reason.errors import TaskError
+from tms_ts.other_runs import orders_in, writes_in
 from tms_ts.reasons import MachineBusy
 from tms_ts.run import Run
 
@@ -69,8 +70,8 @@ class ActiveRuns:
 
     def orders(self) -> dict[str, set[Order]]:
         """Which places the machines of active runs hold while they take others."""
-        return {machine: some for run in self for machine, some in run.facts.orders.items()}
+        return orders_in(run.facts for run in self)
 
     def writes(self, record: str, field: str) -> bool:
         """Whether an active run writes a shared value."""
-        return any((record, field) in run.facts.writes for run in self)
+        return writes_in((run.facts for run in self), record, field)

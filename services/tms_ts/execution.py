@@ -31,6 +31,7 @@ from tms_ts.journal import Journal
 from tms_ts.leases import Leases
 from tms_ts.machines import Identity, Machines
 from tms_ts.numbers import Numbers, no_disk
+from tms_ts.other_runs import orders_told, writes_told
 from tms_ts.place_check import orders_of
 from tms_ts.place_requests import PlaceRequests, RunPlaces
 from tms_ts.preflight import Findings, machines_of, processes_of, records_of
@@ -198,8 +199,8 @@ class Execution:
         """Enter the run into the history, check it, and take its machines."""
         facts = run.facts
         facts.machines, facts.records = machines_of(tree), records_of(tree)
-        facts.orders = orders_of(tree)
-        facts.writes = {(value.record, value.field) for value in tree.shared_values() if value.writes}
+        facts.orders = orders_told(orders_of(tree))
+        facts.writes = writes_told((value.record, value.field) for value in tree.shared_values() if value.writes)
         started = (facts.started.sec, facts.started.nanosec)
         known = (facts.run_id, facts.number, facts.task_id, facts.description, facts.machines, xml, started)
         run.record.begin(Header(*known, facts.records, facts.values, tree.templates))

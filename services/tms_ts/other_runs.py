@@ -9,6 +9,7 @@ from tms_places.waits import Order
 from tms_runtime.app import App
 from tms_schedulers.hearing import sample_runs
 from tms_schedulers.names import Scheduler, schedulers
+from tms_ts.facts import Facts
 
 
 class OtherRuns:
@@ -21,15 +22,11 @@ class OtherRuns:
 
     def orders(self) -> dict[str, set[Order]]:
         """Which places their machines hold while they take others."""
-        found: dict[str, set[Order]] = {}
-        for run in self._runs():
-            for one in run.orders:
-                found.setdefault(one.machine, set()).add((one.held, one.taken))
-        return found
+        return orders_in(self._runs())
 
     def writes(self, record: str, field: str) -> bool:
         """Whether one of them writes a shared value."""
-        return any((one.record, one.field) == (record, field) for run in self._runs() for one in run.writes)
+        return writes_in(self._runs(), record, field)
 
     def _runs(self) -> list[RunState]:
         if self._take is None:
@@ -37,6 +34,20 @@ class OtherRuns:
         with self._taking:
             self._told = self._take() or self._told
         return [run for run in self._told.runs if not self._own.owns(run.run_id)]
+
+
+def orders_in(runs: Iterable[Facts | RunState]) -> dict[str, set[Order]]:
+    """Which places machines of runs hold while they take others."""
+    found: dict[str, set[Order]] = {}
+    for run in runs:
+        for one in run.orders:
+            found.setdefault(one.machine, set()).add((one.held, one.taken))
+    return found
+
+
+def writes_in(runs: Iterable[Facts | RunState], record: str, field: str) -> bool:
+    """Whether one of the runs writes a shared value."""
+    return any((one.record, one.field) == (record, field) for run in runs for one in run.writes)
 
 
 def orders_told(orders: Mapping[str, Iterable[Order]]) -> list[PlaceOrder]:
@@ -50,4 +61,4 @@ def orders_told(orders: Mapping[str, Iterable[Order]]) -> list[PlaceOrder]:
 
 def writes_told(writes: Iterable[tuple[str, str]]) -> list[SharedValue]:
     """For the other schedulers: what a run writes."""
-    return [SharedValue(record=record, field=field) for record, field in sorted(writes)]
+    return [SharedValue(record=record, field=field) for record, field in sorted(set(writes))]

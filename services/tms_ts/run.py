@@ -31,7 +31,6 @@ from tms_ts.journal import Journal
 from tms_ts.machine_stops import reported_by
 from tms_ts.machines import Machines
 from tms_ts.node_report import NodeReport
-from tms_ts.other_runs import orders_told, writes_told
 from tms_ts.place_requests import RunPlaces
 from tms_ts.reasons import TreeOf
 from tms_ts.run_checkpoint import RunCheckpoint
@@ -151,7 +150,7 @@ class Run:
         return RunState(
             run_id=facts.run_id, task_id=facts.task_id, state=facts.state, machines=facts.machines,
             reason=to_line(facts.reason), started_at=facts.started, leaf=self.nodes.leaf, nodes=self.nodes.states,
-            orders=orders_told(facts.orders), writes=writes_told(facts.writes),
+            orders=facts.orders, writes=facts.writes,
         )  # fmt: skip
 
     def publish_tree(self, tree: Tree) -> None:
