@@ -28,6 +28,7 @@ class Limits:
     resolution: float = 0.0  # rad or m by which positions jitter
     turns: bool = False  # an angle that may wrap
     scale: float = 1.0  # seconds of the machine in one second: the speed of a stand-in
+    longest: float = float("inf")  # s between two samples; a jump is hidden in a longer gap
 
 
 @dataclass(frozen=True)
@@ -160,6 +161,8 @@ class Channel:
     def _leaps(self, before: ChannelSample, seconds: float, place: Place, speed: float | None) -> bool:
         """Whether no motion leads from one sample to the next."""
         limits, way = self._limits, self._distance(before.place, place)
+        if seconds > limits.longest and way > self._spare(0.0):
+            return True
         seconds, spare = seconds * limits.scale, self._spare(max(abs(speed or 0.0), abs(before.speed or 0.0)))
         if way > SPEED_MARGIN * limits.top * seconds + spare:
             return True

@@ -5,6 +5,8 @@ from dataclasses import dataclass
 from typing import Literal
 
 Stamps = Literal["utc", "since_start", "none"]
+PERIODS = 3  # periods in which a stamp may stand still, or no message come
+SHORTEST = 0.2  # s; the gateway takes messages 20 times a second, and PCs are busy
 
 
 @dataclass(frozen=True)
@@ -44,6 +46,11 @@ class SourceFacts:
     frozen_after: float  # s with equal values while a goal should change them
     topic: str  # its full name
     resolution: float = 0.0  # rad or m by which positions jitter
+
+    @property
+    def longest(self) -> float:
+        """Seconds without a new stamp; then it is no proof any more."""
+        return max(PERIODS * self.period, SHORTEST)
 
 
 @dataclass(frozen=True)

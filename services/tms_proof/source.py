@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from tms_proof.channel import Channel, Limits, Place, distance
-from tms_proof.facts import SourceFacts
+from tms_proof.facts import PERIODS, SourceFacts
 from tms_proof.reasons import (
     Implausible,
     Imu,
@@ -24,8 +24,6 @@ from tms_proof.stamps import StampClock, StampVerdict
 from tms_reason.reason import Reason
 
 LABELS: dict[str, Reason] = {"joint_states": JointStates(), "odom": Odometry(), "pose": Pose(), "imu": Imu()}
-PERIODS = 3  # periods in which a stamp may stand still, or no message come
-SHORTEST = 0.2  # s; the gateway takes messages 20 times a second, and PCs are busy
 SETTLED = 5.0  # s that a machine must have stood before a new clock of its source is accepted
 MIXED = 2.0  # s; publication numbers that go back twice in this time mean two publishers
 
@@ -54,7 +52,7 @@ class SourceWatch:
 
     def __init__(self, name: str, source: SourceFacts, channels: Mapping[str, Limits]) -> None:
         self.label, self.source = LABELS[name], source
-        self.longest = max(PERIODS * source.period, SHORTEST)  # s without a new stamp; then it is no proof any more
+        self.longest = source.longest
         self.channels = {key: Channel(limits) for key, limits in channels.items()}
         self._limits = dict(channels)
         self._clock = StampClock(source.stamps)

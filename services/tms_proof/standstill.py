@@ -8,7 +8,7 @@ the hydraulics may move it. A channel without samples does not count as standing
 from dataclasses import dataclass, replace
 
 from tms_proof.channel import WORST, Limits, Place
-from tms_proof.facts import MachineFacts
+from tms_proof.facts import MachineFacts, SourceFacts
 from tms_proof.proof import INFINITE, NOTHING, SEEN, Expected, Proof
 from tms_proof.reasons import Beyond, Moving, NoSource, NotLongEnough
 from tms_proof.source import LABELS, SourceSample, SourceWatch, Trouble
@@ -44,8 +44,7 @@ class StandStill:
         self.reached = max((one.dead_time for one in joints), default=0.0)
         self.reached += max((one.lag for one in joints), default=0.0)
         self.sources: dict[str, SourceWatch] = {
-            name: SourceWatch(name, source, _channels(name, facts, source.resolution))
-            for name, source in facts.sources.items()
+            name: SourceWatch(name, source, _channels(name, facts, source)) for name, source in facts.sources.items()
         }
         self._marks: dict[str, dict[str, Place]] = {}
         self._angles: dict[str, float] = {}
@@ -245,19 +244,19 @@ class StandStill:
         return Travel(joint, angles.get(joint, 0.0), self._way)
 
 
-def _channels(name: str, facts: MachineFacts, resolution: float) -> dict[str, Limits]:
+def _channels(name: str, facts: MachineFacts, source: SourceFacts) -> dict[str, Limits]:
     """The channels of a source, and when each counts as standing."""
-    still, speed = facts.still, facts.speed
+    still, speed, resolution, longest = facts.still, facts.speed, source.resolution, source.longest
     if name == JOINTS:
         return {
             joint: Limits(
-                still.velocity, limits.velocity, resolution, limits.low is None and limits.high is None, speed
+                still.velocity, limits.velocity, resolution, limits.low is None and limits.high is None, speed, longest
             )
             for joint, limits in facts.joints.items()
         }
     if name == IMU:
         return {TURNING: Limits(still.angular)}  # it tells no positions: top speed and scale do not count
     return {
-        PLACE: Limits(still.linear, facts.drive_velocity, resolution, scale=speed),
-        HEADING: Limits(still.angular, facts.turn_velocity, resolution, True, speed),
+        PLACE: Limits(still.linear, facts.drive_velocity, resolution, False, speed, longest),
+        HEADING: Limits(still.angular, facts.turn_velocity, resolution, True, speed, longest),
     }

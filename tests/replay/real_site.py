@@ -64,7 +64,9 @@ class RealSite:
 
     def write_records(self) -> None:
         """Poses to which the machine swings from where it is now, to and fro about its middle."""
-        at = self.observer.since(unix_time() - 2.0).truth[-1].joints
+        since = unix_time()
+        wait_until(lambda: self.observer.since(since).truth, LIMIT, f"{ONE} tells how it truly moves")
+        at = self.observer.since(since).truth[-1].joints
         joints = {joint: at[joint] for joint in self.site.model_of(ONE).joints}
         side = -1.0 if joints["swing_joint"] > 0.0 else 1.0
         for name, way in SWINGS.items():

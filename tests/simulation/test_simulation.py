@@ -100,6 +100,11 @@ def test_a_run_whose_scheduler_was_killed_right_after_it_told_of_it_is_lost() ->
     assert Schedule(20767120).run().violation == ""
 
 
+def test_a_record_that_begins_after_a_gap_shows_no_expected_motion() -> None:
+    """A machine fell mute, got a goal, and replayed the motion before it, which went the same way."""
+    assert Schedule(20837444).run().violation == ""
+
+
 @pytest.mark.parametrize("seed", [31292, 16912990, 2912419538, 1277639756])
 def test_a_motion_that_no_source_has_shown_is_waited_for(seed: int) -> None:
     """A stranger cancelled it, and the machine went on and replayed its record of before, in which it stood.

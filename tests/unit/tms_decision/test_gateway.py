@@ -349,6 +349,8 @@ def test_a_machine_that_falls_silent_while_it_moves_is_stopped_and_latched() -> 
     assert not rig.all(f.End), "its goal ends when it was seen to stand"
     rig.plant.fault.mute = False
     rig.run(4.0)
+    assert not rig.receipt.confirmed, "it is elsewhere than before it fell silent, as if it replayed a record"
+    rig.run(1.0)
     assert rig.receipt.confirmed and rig.receipt.latched and rig.receipt.cause == rig.gateway.latch.cause
     assert len(rig.all(f.Tell)) == 2 and rig.end.outcome == "ABORTED"
 

@@ -126,6 +126,13 @@ def test_velocities_are_compared_with_the_way_up_to_a_pause() -> None:
     assert leaps(STAND_IN, 0.05, far, AT_REST)
 
 
+def test_what_goes_on_elsewhere_after_a_gap_may_be_a_record() -> None:
+    near, far, gaps = ((0.0,), (BETWEEN,)), ((0.0,), (0.02,)), Limits(LIMIT, longest=0.25)
+    assert not leaps(gaps, 0.25, far, NO_SPEED)
+    assert leaps(gaps, 0.26, far, NO_SPEED) and leaps(gaps, 0.26, far, (0.1, 0.1))
+    assert not leaps(gaps, 0.26, near, NO_SPEED)
+
+
 def test_a_stand_in_measures_as_much_earlier_as_it_is_faster() -> None:
     """Four times as fast, it goes 0.2 rad in 0.05 s, and what is stamped 0.025 s late may be 0.1 rad off."""
     assert not leaps(STAND_IN, 0.05, ((0.0,), (0.29,)), (1.0, 1.0))

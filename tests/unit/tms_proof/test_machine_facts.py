@@ -122,7 +122,7 @@ def test_a_motion_too_small_to_be_seen_need_not_be_seen() -> None:
 def proven(expected: Expected, way: float) -> bool:
     """Whether a stop is proven by a second of standing after the joint `boom` has gone a way at 0 s."""
     watch = machine()
-    joints(watch, -0.5)
+    joints(watch, -0.15)
     watch.mark()
     for i in range(30):
         joints(watch, PERIOD * i, boom=way)
