@@ -27,8 +27,9 @@ LIBRARIES = (
     "difflib", "babel.messages.pofile",
 )  # fmt: skip
 INTERFACES = (
-    "tms_msg_ts", "tms_msg_db", "tms_msg_rc", "tms_msg_rp", "tms_msg_host", "tms_msg_if", "tms_msg_ur", "control_msgs",
-    "nav2_msgs", "com3_msgs", "geometry_msgs", "nav_msgs", "sensor_msgs", "std_msgs", "std_srvs", "trajectory_msgs",
+    "tms_msg_ts", "tms_msg_db", "tms_msg_rc", "tms_msg_rp", "tms_msg_host", "tms_msg_if", "tms_msg_ur", "tms_msg_areas",
+    "tms_msg_ground", "control_msgs", "nav2_msgs", "com3_msgs", "geometry_msgs", "nav_msgs", "sensor_msgs", "std_msgs",
+    "std_srvs", "tf2_msgs", "trajectory_msgs",
 )  # fmt: skip
 MIDDLEWARE = "librmw_fastrtps_cpp.so"
 PR_SET_PDEATHSIG = 1
