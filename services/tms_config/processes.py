@@ -1,6 +1,7 @@
 """The process table: services + machines x subtasks. No other part starts processes."""
 
 import difflib
+from collections import Counter
 from dataclasses import dataclass, replace
 
 from tms_config import pcs, reasons
@@ -67,9 +68,9 @@ def table(site: Site) -> tuple[Process, ...]:
     rows = [*_services(site), *(row for machine in site.file.machines for row in _machine(site, machine))]
     base = site.file.ports.metrics
     numbered = tuple(_placed(site, replace(row, port=base + i)) for i, row in enumerate(rows))
-    for row in numbered:
-        if sum(other.full == row.full for other in numbered) > 1:
-            raise ConfigError(reasons.BadFile(str(site.path), reasons.SameName(row.full)))
+    for name, count in Counter(row.full for row in numbered).items():
+        if count > 1:
+            raise ConfigError(reasons.BadFile(str(site.path), reasons.SameName(name)))
     return numbered
 
 
@@ -90,8 +91,7 @@ def find(site: Site, name: str) -> Process:
         ConfigError: no row or several match; names them.
     """
     rows = table(site)
-    exact = [row for row in rows if row.full == name]
-    if exact:
+    if exact := [row for row in rows if row.full == name]:
         return exact[0]
     group, _, part = name.rpartition(":")
     near = [row for row in rows if part and part in row.name and group in ("", row.group)]

@@ -24,7 +24,7 @@ MODULE = "tms_runtime.run"  # programs that are forked; others (none today) are 
 LIBRARIES = (
     "rclpy", "rclpy.action", "rclpy.executors", "rclpy.event_handler", "rclpy.serialization",
     "prometheus_client", "structlog.stdlib", "yaml", "asyncio", "http.client", "concurrent.futures", "logging.handlers",
-    "difflib", "babel.messages.pofile",
+    "difflib", "babel.messages.pofile", "numpy.typing", "pydantic.networks", "pydantic.type_adapter",
 )  # fmt: skip
 INTERFACES = (
     "tms_msg_ts", "tms_msg_db", "tms_msg_rc", "tms_msg_rp", "tms_msg_host", "tms_msg_if", "tms_msg_ur", "tms_msg_areas",
