@@ -37,7 +37,7 @@ TMS := $(VENV)/bin/tms $(if $(SITE),--site $(SITE))
 # A sourced ROS installation would mix its libraries into the venv's.
 unexport PYTHONPATH LD_LIBRARY_PATH AMENT_PREFIX_PATH CMAKE_PREFIX_PATH _ROS_WHEELS_BOOTSTRAP_COMPLETE
 .DEFAULT_GOAL := help
-.PHONY: help setup console console-types bundle interfaces locks demo test test-fast up down status logs restart lint conformance bench verify pictures soak drill simulate areas replay model traces mutants mutmut coverage nightly test-docker system containers clean
+.PHONY: help setup console console-types bundle interfaces locks demo test test-fast up down status logs restart lint conformance bench verify pictures soak drill simulate areas replay model traces mutants mutmut coverage nightly test-docker fleet system containers clean
 
 help: ## this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 14
@@ -234,6 +234,9 @@ containers: ## the system packages of test-docker: a Docker engine, Compose and 
 
 test-docker: setup containers ## a site of four PCs as containers; starts a Docker engine where none runs
 	@DOCKER=$(DOCKER) $(PY) -m pytest -p no:randomly -m docker -s --durations=0 tests/docker
+
+fleet: setup containers ## how many machines four PCs carry, each with a scheduler: containers on this PC (MACHINES="40 100")
+	@TMS_FLEET="$(or $(MACHINES),40 60 80 100)" DOCKER=$(DOCKER) $(PY) -m pytest -p no:randomly -m docker -s tests/docker/test_fleet.py
 
 clean: down ## remove the environments and the demo's state (SITE=name: that site's)
 	rm -rf $(VENV) $(VENV)-store $(VENV)-console node_modules $(dir $(BUILT)) .state/$(basename $(notdir $(or $(SITE),demo)))

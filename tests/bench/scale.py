@@ -14,38 +14,28 @@ import subprocess
 import sys
 import time
 import urllib.request
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import AbstractContextManager, ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
 import psutil
 from prometheus_client.parser import text_string_to_metric_families
-from std_msgs.msg import Bool
-from tms_msg_db.srv import AddTask, SetParameter
-from tms_msg_ts.action import ExecuteTask
 
-from bench.rig.mesh import Rig, rig, until
+from bench.rig import dispatcher
+from bench.rig.dispatcher import END_LIMIT, LIMIT, SUBTASKS
+from bench.rig.mesh import Rig, rig
 from bench.runner import Figure
-from tms_config.processes import find
-from tms_machine.values import to_parameters
-from tms_ros.client import Call
-from tms_ros.node import Ros
-from tms_schedulers.names import own as scheduler_of
-from tms_schedulers.names import schedulers
+from tms_config.processes import Process, find
 
 SIZES = ((1, 1), (5, 1), (20, 1), (20, 2), (50, 1))  # machines, schedulers
 RUNS = 20  # at most; a run moves a machine at least
 SERVICES: dict[str, object] = {"db": {}, "ts": {}}
 FIRST, SECOND = "cps", "east"  # PCs of a site of two schedulers
-JOINTS = {"boom": -46.0, "swing": 0.0, "arm": 114.0, "bucket": 46.0}  # deg
-SUBTASKS = [f"st_zx200_sample_{joint}" for joint in JOINTS]
 A_PROCESS = 10  # machines in one process of the crowd
 SETTLE, WATCH = 2.0, 12.0  # s
 SLOW = 0.25  # s; p99 of the hand-overs is below it if at most 1 % are above it
-LIMIT, END_LIMIT = 60.0, 20.0  # s; the second for the runs to end after a stop
 CROWD, FORKS = (Path(__file__).parent / "rig" / name for name in ("crowd.py", "forks.py"))
-LEAF = '<Action ID="LeafNodeZx200" model_name="{}" record_name="BENCH" subtask_name="{}"/>'
 
 
 @dataclass(frozen=True)
@@ -94,14 +84,14 @@ def _cost(size: int, count: int) -> Cost:
             assert crowd.stdout is not None
             assert crowd.stdout.readline() == "ready\n"
         ros = stack.enter_context(own.node())
-        _store_records(ros, names)
-        calls = [call for process, share in zip(pids, shares, strict=True) for call in _start(own, ros, process, share)]
-        until(lambda: all(_runs(call) for call in calls), "every run goes", LIMIT)
+        dispatcher.store_records(ros, names)
+        calls = dispatcher.start_all(ros, own.site, RUNS)
         time.sleep(SETTLE)
-        late, handed_over, slow, cpu = map(max, zip(*_watched(own, pids), strict=True))
+        rows = {find(own.site, name): pid for name, pid in pids.items()}
+        late, handed_over, slow, cpu = map(max, zip(*watched(rows), strict=True))
         memory = max(psutil.Process(pid).memory_full_info().pss / 1e6 for pid in pids.values())
-        received, cancelled = _press(ros, crowds)
-        return Cost(late, handed_over, slow, received, cancelled, _left(calls), cpu, memory)
+        received, cancelled = after_press(dispatcher.press(ros, len(crowds)), crowds)
+        return Cost(late, handed_over, slow, received, cancelled, dispatcher.left(calls), cpu, memory)
 
 
 def _site(shares: list[list[str]]) -> AbstractContextManager[Rig]:
@@ -156,72 +146,16 @@ def _program(own: Rig, env: dict[str, str], path: Path, *words: str) -> Iterator
         yield running
 
 
-def _store_records(ros: Ros, names: list[str]) -> None:
-    values = to_parameters({f"zx200_{joint}_goal_pos": angle for joint, angle in JOINTS.items()})
+def watched(rows: Mapping[Process, int]) -> list[tuple[float, float, float, float]]:
+    """Of schedulers, in a while, by pid: late ticks [%], mean hand-over [ms], slow ones [%], processor time [%]."""
 
-    def stored(name: str) -> bool:
-        request = SetParameter.Request(
-            model_name=name, record_name="BENCH", type="static", source="bench", create=True, values=values
-        )
-        return not ros.call(SetParameter, "/tms/db/set_parameter", request, LIMIT).error_code
+    def used() -> dict[Process, float]:
+        return {row: sum(psutil.Process(pid).cpu_times()[:2]) for row, pid in rows.items()}
 
-    until(lambda: stored(names[0]), "the database", LIMIT)
-    assert all(stored(name) for name in names[1:])
-
-
-def _start(own: Rig, ros: Ros, process: str, names: list[str]) -> list[Call]:
-    """A scheduler's machines dealt out to its runs, which go on for ever."""
-    runs = RUNS // len(schedulers(own.site))
-    hands = [names[number::runs] for number in range(min(runs, len(names)))]
-    scheduler = ros.peer(ExecuteTask, scheduler_of(own.site, process).named("execute_task"))
-    scheduler.wait_ready(LIMIT)
-    calls = []
-    for hand in hands:
-        added = ros.call(AddTask, "/tms/db/add_task", AddTask.Request(task_sequence=_tree(hand)), LIMIT)
-        assert not added.error_code, added.error_msg
-        calls.append(scheduler.send(ExecuteTask.Goal(task_id=added.task_id, ignore_warnings=True)))
-    return calls
-
-
-def _left(calls: list[Call]) -> int:
-    deadline = time.monotonic() + END_LIMIT
-    for call in calls:
-        call.wait_for(lambda call=call: call.outcome is not None, deadline - time.monotonic())  # type: ignore[misc]
-    return sum(call.outcome is None for call in calls)
-
-
-def _runs(call: Call) -> bool:
-    assert call.outcome is None, call.result
-    return call.feedback is not None and call.feedback.state == "running"
-
-
-def _tree(machines: list[str]) -> str:
-    """Each machine from subtask to subtask, all of them at once."""
-    rows = [
-        f"<KeepRunningUntilFailure><Sequence>{''.join(LEAF.format(name, subtask) for subtask in SUBTASKS)}</Sequence>"
-        "</KeepRunningUntilFailure>"
-        for name in machines
-    ]
-    inside = (
-        rows[0]
-        if len(rows) == 1
-        else f'<Parallel success_threshold="{len(rows)}" failure_threshold="1">{"".join(rows)}</Parallel>'
-    )
-    return f'<root main_tree_to_execute="M"><BehaviorTree ID="M">{inside}</BehaviorTree></root>'
-
-
-def _watched(own: Rig, pids: dict[str, int]) -> list[tuple[float, float, float, float]]:
-    """Of each scheduler, in a while: late ticks [%], mean hand-over [ms], slow ones [%], processor time [% core]."""
-
-    def used() -> dict[str, float]:
-        return {name: sum(psutil.Process(pid).cpu_times()[:2]) for name, pid in pids.items()}
-
-    before, cpu, begun = {name: _counted(own, name) for name in pids}, used(), time.perf_counter()
+    before, cpu, begun = {row: _counted(row) for row in rows}, used(), time.perf_counter()
     time.sleep(WATCH)
-    after, ended, passed = {name: _counted(own, name) for name in pids}, used(), time.perf_counter() - begun
-    return [
-        (*_ticks_and_hand_overs(before[name], after[name]), 100 * (ended[name] - cpu[name]) / passed) for name in pids
-    ]
+    after, ended, passed = {row: _counted(row) for row in rows}, used(), time.perf_counter() - begun
+    return [(*_ticks_and_hand_overs(before[row], after[row]), 100 * (ended[row] - cpu[row]) / passed) for row in rows]
 
 
 def _ticks_and_hand_overs(before: dict[str, float], after: dict[str, float]) -> tuple[float, float, float]:
@@ -234,8 +168,7 @@ def _ticks_and_hand_overs(before: dict[str, float], after: dict[str, float]) -> 
     return late, handed_over, 100 * (1 - grown(f"handover_seconds_bucket_{SLOW}") / hand_overs)
 
 
-def _counted(own: Rig, process: str) -> dict[str, float]:
-    row = find(own.site, process)
+def _counted(row: Process) -> dict[str, float]:
     with urllib.request.urlopen(f"http://{row.address}:{row.port}/metrics", timeout=5) as answer:
         families = text_string_to_metric_families(answer.read().decode())
         return {
@@ -245,14 +178,8 @@ def _counted(own: Rig, process: str) -> dict[str, float]:
         }
 
 
-def _press(ros: Ros, crowds: list[subprocess.Popen[str]]) -> tuple[float, float]:
-    """The software stop: ms until the last machine has heard it, and until the last goal was asked to end."""
-    button = ros.publisher(Bool, "/emergency_signal")
-    until(lambda: button.get_subscription_count() > len(crowds), "every machine is known to the button", LIMIT)
-    button.publish(Bool())
-    assert ros.delivered(button, LIMIT), "not every machine knows the button"
-    begun = time.time_ns()
-    button.publish(Bool(data=True))
+def after_press(begun: int, crowds: Iterable[subprocess.Popen[str]]) -> tuple[float, float]:
+    """ms from the press [ns since 1970] until the last machine has heard it, and the last goal was asked to end."""
     stamps = []
     for crowd in crowds:
         assert crowd.stdout is not None

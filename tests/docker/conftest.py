@@ -12,8 +12,11 @@ from typing import Any
 
 import pytest
 from docker_site import DOCKER, IMAGE, Yard
+from fleet import Fleet
 
 from conftest import PROJECT
+
+collect_ignore = [] if os.environ.get("TMS_FLEET") else ["test_fleet.py"]  # it asks for the whole PC
 
 
 class Engine:
@@ -88,12 +91,19 @@ def yard_of_two(image: None) -> Iterator[Yard]:
         yield site
 
 
+@pytest.fixture
+def fleet(image: None, request: pytest.FixtureRequest) -> Iterator[Fleet]:
+    """A site of four PCs with so many machines, which are there as messages only."""
+    with running(Fleet, machines=request.param) as site:
+        yield site
+
+
 @contextmanager
-def running(**changes: Any) -> Iterator[Yard]:
+def running(kind: type[Yard] = Yard, **changes: Any) -> Iterator[Any]:
     """A site, which is gone afterwards; its logs stay in the folder that TMS_LOGS names."""
     folder = Path(tempfile.mkdtemp(prefix="tms-yard-"))
     folder.chmod(0o755)
-    site = Yard(uuid.uuid4().hex[:6], folder, **changes)
+    site = kind(uuid.uuid4().hex[:6], folder, **changes)
     try:
         site.create()
         yield site

@@ -5,6 +5,7 @@ import json
 import os
 import subprocess
 import time
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -71,6 +72,16 @@ class Yard:
 
     def create(self) -> None:
         """The networks and a container for each PC; the tasks are 1 (a loading cycle) and 2 (swings)."""
+        self.start()
+        if "zx200" in {row.machine for row in self.rows}:
+            self.tms("cps", "rearm", "zx200", "--yes")
+        self.tms("cps", "param", "load", "configs/parameters/zx200.yaml")
+        self.tms("cps", "param", "load", "/data/swings.yaml")
+        self.tms("cps", "task", "add", "configs/tasks/one_loading_cycle.xml")
+        self.tms("cps", "task", "add", "/data/swings.xml")
+
+    def start(self) -> None:
+        """The networks and a container for each PC, until all are ready."""
         for pc in {self.network(pc): pc for pc in self.address}.values():
             subnet = self.address[pc].rpartition(".")[0] + ".0/24"
             plain = ["--opt", "com.docker.network.bridge.enable_ip_masquerade=false"]  # a router, no translation
@@ -81,20 +92,14 @@ class Yard:
             self._start(pc)
         for pc in self.address:
             self.wait_ready(pc)
-        if "zx200" in {row.machine for row in self.rows}:
-            self.tms("cps", "rearm", "zx200", "--yes")
-        self.tms("cps", "param", "load", "configs/parameters/zx200.yaml")
-        self.tms("cps", "param", "load", "/data/swings.yaml")
-        self.tms("cps", "task", "add", "configs/tasks/one_loading_cycle.xml")
-        self.tms("cps", "task", "add", "/data/swings.xml")
 
-    def _start(self, pc: str) -> None:
+    def _start(self, pc: str, options: Sequence[str] = (), words: Sequence[str] = ()) -> None:
         docker(
             "run", "--detach", "--name", self.name(pc), "--hostname", pc, "--network", self.network(pc),
             "--ip", self.address[pc], "--env", "TMS_SITE=/etc/tms/yard.yaml", "--env", f"TMS_PC={pc}",
             "--volume", f"{self._folder}/yard.yaml:/etc/tms/yard.yaml:ro",
             "--volume", f"{PROJECT}/tests/data:/data:ro", "--volume", f"{PROJECT}/tests/docker:/tools:ro",
-            IMAGE,
+            *options, IMAGE, *words,
         )  # fmt: skip
 
     def remove(self) -> None:
