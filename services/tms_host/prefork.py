@@ -21,15 +21,20 @@ from supervisor.options import ServerOptions
 from supervisor.supervisord import go
 
 MODULE = "tms_runtime.run"  # programs that are forked; others (none today) are executed as usual
-LIBRARIES = (
+LIBRARIES = (  # of all processes; then of tms_db, tms_ts, tms_rp and tms_ur, which would else weigh a fifth more each
     "rclpy", "rclpy.action", "rclpy.executors", "rclpy.event_handler", "rclpy.serialization",
     "prometheus_client", "structlog.stdlib", "yaml", "asyncio", "http.client", "concurrent.futures", "logging.handlers",
-    "difflib", "babel.messages.pofile", "numpy.typing", "pydantic.networks", "pydantic.type_adapter",
+    "difflib", "babel.messages.pofile", "numpy.typing", "pydantic.networks", "pydantic.type_adapter", "psutil",
+    "pymongo", "lxml.etree", "sqlite3",
+    "py_trees", "zmq", "msgpack", "flatbuffers", "simpleeval",
+    "ompl.base", "ompl.geometric", "fcl", "ruckig",
+    "fastapi", "fastapi.staticfiles", "starlette.middleware.gzip", "pydantic.v1", "argon2", "uvicorn",
+    "uvicorn.lifespan.on", "uvicorn.loops.asyncio", "uvicorn.protocols.http.h11_impl", "anyio._backends._asyncio",
 )  # fmt: skip
 INTERFACES = (
     "tms_msg_ts", "tms_msg_db", "tms_msg_rc", "tms_msg_rp", "tms_msg_host", "tms_msg_if", "tms_msg_ur", "tms_msg_areas",
-    "tms_msg_ground", "control_msgs", "nav2_msgs", "com3_msgs", "geometry_msgs", "nav_msgs", "sensor_msgs", "std_msgs",
-    "std_srvs", "tf2_msgs", "trajectory_msgs",
+    "tms_msg_ground", "tms_msg_sp", "control_msgs", "nav2_msgs", "com3_msgs", "diagnostic_msgs", "geometry_msgs",
+    "nav_msgs", "sensor_msgs", "std_msgs", "std_srvs", "tf2_msgs", "trajectory_msgs", "visualization_msgs",
 )  # fmt: skip
 MIDDLEWARE = "librmw_fastrtps_cpp.so"
 PR_SET_PDEATHSIG = 1
@@ -82,7 +87,10 @@ def _end_with(parent: int) -> None:
 def load() -> None:
     """Import the libraries that most processes use."""
     for name in LIBRARIES:
-        importlib.import_module(name)
+        try:
+            importlib.import_module(name)
+        except ImportError as error:  # the process that needs it fails alone, and is the one to tell why
+            print(f"{name} is not loaded before programs are forked: {error}", file=sys.stderr)
     pydantic.create_model("Loaded", name=(str, ...))  # it imports most of itself with the first model
     for package in INTERFACES:
         for kind in ("msg", "srv", "action"):

@@ -111,10 +111,17 @@ def imported(code: str) -> set[str]:
 
 
 def test_what_each_process_imports_is_loaded_before_it_is_forked() -> None:
-    """Else hundreds of starts of a test run load the same libraries once more."""
+    """Else each keeps a copy of its own of the same libraries, and a start takes longer."""
     loaded = imported("from tms_host import prefork; prefork.load()")
-    needed = imported("import tms_runtime.run, tms_runtime.app, tms_runtime.graph")
+    nodes = ", ".join(f"tms_{name}.node" for name in ("db", "host", "if", "mc", "rc", "rp", "sp", "ts", "ur"))
+    needed = imported(f"import tms_runtime.run, tms_runtime.app, tms_runtime.graph, tms_kit.subtask_server, {nodes}")
     assert {one for one in needed - loaded if not one.startswith(("tms_", "_"))} - sys.stdlib_module_names == set()
+
+
+def test_a_library_that_is_broken_keeps_no_other_process_from_its_start() -> None:
+    code = "from tms_host import prefork; prefork.LIBRARIES = ('no_such_planner', 'yaml'); prefork.load()"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=True)
+    assert "no_such_planner is not loaded before programs are forked: No module named" in done.stderr
 
 
 def test_the_ground_needs_no_libraries_of_surveyors_to_start() -> None:
