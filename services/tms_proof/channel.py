@@ -69,8 +69,10 @@ class Channel:
                                                            received, stamped, place))  # fmt: skip
         if before is not None and before.place and self._leaps(before, stamped - before.stamped, place, speed):
             self.surprised = received
-        kept = [one for one in self._samples if received - one.received <= KEPT]
-        self._take((*kept, ChannelSample(received, stamped, place, speed, fast)))
+        samples, first = self._samples, 0
+        while first < len(samples) and received - samples[first].received > KEPT:
+            first += 1
+        self._take((*samples[first:], ChannelSample(received, stamped, place, speed, fast)))
 
     def clear(self) -> None:
         """Forget everything: what was received belongs to another clock."""
@@ -78,8 +80,10 @@ class Channel:
 
     def _take(self, samples: tuple[ChannelSample, ...]) -> None:
         self._samples, self._moves, self._disagrees = samples, None, ()
-        newest = samples[-1].received if samples else 0.0
-        self._recent = tuple([one for one in samples if newest - one.received <= WORST + 1e-9])
+        first = len(samples)
+        while first > 0 and samples[-1].received - samples[first - 1].received <= WORST + 1e-9:
+            first -= 1
+        self._recent = samples[first:]
 
     def moving(self) -> bool:
         """Whether any of the last samples showed a motion; unknown counts as moving."""
