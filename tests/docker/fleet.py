@@ -46,7 +46,7 @@ class Fleet(Yard):
 
     def _pid(self, row: Process) -> int:
         below = psutil.Process(self.pid(row.pc)).children(recursive=True)
-        return next(one.pid for one in below if one.cmdline()[-1:] == [row.full])
+        return next(one.pid for one in below if " ".join(one.cmdline()).endswith(f" {row.full}"))
 
     @contextmanager
     def crowds(self) -> Iterator[list[subprocess.Popen[str]]]:
