@@ -13,6 +13,8 @@ import logging
 import os
 import signal
 import sys
+from collections.abc import Iterable
+from itertools import chain
 from typing import NoReturn
 
 import pydantic
@@ -21,16 +23,22 @@ from supervisor.options import ServerOptions
 from supervisor.supervisord import go
 
 MODULE = "tms_runtime.run"  # programs that are forked; others (none today) are executed as usual
-LIBRARIES = (  # of all processes; then of tms_db, tms_ts, tms_rp and tms_ur, which would else weigh a fifth more each
+LIBRARIES = (
     "rclpy", "rclpy.action", "rclpy.executors", "rclpy.event_handler", "rclpy.serialization",
     "prometheus_client", "structlog.stdlib", "yaml", "asyncio", "http.client", "concurrent.futures", "logging.handlers",
     "difflib", "babel.messages.pofile", "numpy.typing", "pydantic.networks", "pydantic.type_adapter", "psutil",
-    "pymongo", "lxml.etree", "sqlite3",
-    "py_trees", "zmq", "msgpack", "flatbuffers", "simpleeval",
-    "ompl.base", "ompl.geometric", "fcl", "ruckig",
-    "fastapi", "fastapi.staticfiles", "starlette.middleware.gzip", "pydantic.v1", "argon2", "uvicorn",
-    "uvicorn.lifespan.on", "uvicorn.loops.asyncio", "uvicorn.protocols.http.h11_impl", "anyio._backends._asyncio",
 )  # fmt: skip
+LIBRARIES_OF = {  # of single processes, where they run: a fifth of what each would weigh
+    "db": ("pymongo", "lxml.etree"),
+    "ts": ("py_trees", "zmq", "msgpack", "flatbuffers", "simpleeval", "lxml.etree"),
+    "rp": ("ompl.base", "ompl.geometric", "fcl", "ruckig", "sqlite3"),
+    "mc": ("ruckig",),
+    "ur": (
+        "fastapi", "fastapi.staticfiles", "starlette.middleware.gzip", "pydantic.v1", "uvicorn", "uvicorn.lifespan.on",
+        "uvicorn.loops.asyncio", "uvicorn.protocols.http.h11_impl", "anyio._backends._asyncio", "argon2", "sqlite3",
+        "lxml.etree",
+    ),
+}  # fmt: skip
 INTERFACES = (
     "tms_msg_ts", "tms_msg_db", "tms_msg_rc", "tms_msg_rp", "tms_msg_host", "tms_msg_if", "tms_msg_ur", "tms_msg_areas",
     "tms_msg_ground", "tms_msg_sp", "control_msgs", "nav2_msgs", "com3_msgs", "diagnostic_msgs", "geometry_msgs",
@@ -84,13 +92,14 @@ def _end_with(parent: int) -> None:
         os._exit(1)
 
 
-def load() -> None:
-    """Import the libraries that most processes use."""
-    for name in LIBRARIES:
+def load(processes: Iterable[str]) -> None:
+    """Import the libraries of all processes, and those of these single ones: `tms:ur`."""
+    single = [LIBRARIES_OF.get(name.partition(":")[2].partition("_")[0], ()) for name in processes]
+    for name in dict.fromkeys(chain(LIBRARIES, *single)):
         try:
             importlib.import_module(name)
         except ImportError as error:  # the process that needs it fails alone, and is the one to tell why
-            print(f"{name} is not loaded before programs are forked: {error}", file=sys.stderr)
+            sys.stderr.write(f"{name} is not loaded before programs are forked: {error}\n")
     pydantic.create_model("Loaded", name=(str, ...))  # it imports most of itself with the first model
     for package in INTERFACES:
         for kind in ("msg", "srv", "action"):
@@ -113,9 +122,9 @@ def _load_types(name: str) -> None:
 
 def main() -> None:
     """Run supervisord with the arguments of the command line."""
-    load()
     options = Options()
     options.realize(doc=__doc__)
+    load(one.command.split()[-1] for group in options.process_group_configs for one in group.process_configs)
     options.first, options.test = True, False
     go(options)
 

@@ -25,7 +25,7 @@ def _forked(name: str, parent: int) -> int:
 
 def main() -> None:
     """Until the input ends."""
-    prefork.load()
+    prefork.load(sys.argv[1:])
     pids = [_forked(name, os.getpid()) for name in sys.argv[1:]]
     print(json.dumps(pids), flush=True)
     sys.stdin.read()

@@ -33,6 +33,7 @@ while {orphan} and os.getppid() == parent:
     time.sleep(0.01)
 options.execve("/nonexistent/python", ["python", "-m", {module!r}, {name!r}], {{"ONLY": "this"}})
 """
+LOAD = "from tms_host import prefork; prefork.load(f'tms:{name}_east' for name in prefork.LIBRARIES_OF)"
 WAITS = "os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])"
 START = """
 import ctypes
@@ -93,7 +94,7 @@ def test_other_programs_are_executed(run) -> None:  # type: ignore[no-untyped-de
 
 def test_only_libraries_are_shared() -> None:
     """What a restarted process runs must come from the disk, not from a supervisord that is weeks old."""
-    code = "import sys; from tms_host import prefork; prefork.load(); print(*sys.modules)"
+    code = f"import sys; {LOAD}; print(*sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=True)
     loaded = set(done.stdout.split())
     ours = {path.name for path in Path("services").glob("tms_*")}
@@ -112,14 +113,21 @@ def imported(code: str) -> set[str]:
 
 def test_what_each_process_imports_is_loaded_before_it_is_forked() -> None:
     """Else each keeps a copy of its own of the same libraries, and a start takes longer."""
-    loaded = imported("from tms_host import prefork; prefork.load()")
+    loaded = imported(LOAD)
     nodes = ", ".join(f"tms_{name}.node" for name in ("db", "host", "if", "mc", "rc", "rp", "sp", "ts", "ur"))
     needed = imported(f"import tms_runtime.run, tms_runtime.app, tms_runtime.graph, tms_kit.subtask_server, {nodes}")
     assert {one for one in needed - loaded if not one.startswith(("tms_", "_"))} - sys.stdlib_module_names == set()
 
 
+def test_what_no_process_of_a_pc_needs_is_not_loaded() -> None:
+    loaded = imported("from tms_host import prefork; prefork.load(['zx200:rc', 'tms:db'])")
+    assert "pymongo" in loaded and not {"ompl", "py_trees", "fastapi"} & loaded
+
+
 def test_a_library_that_is_broken_keeps_no_other_process_from_its_start() -> None:
-    code = "from tms_host import prefork; prefork.LIBRARIES = ('no_such_planner', 'yaml'); prefork.load()"
+    code = (
+        "from tms_host import prefork; prefork.LIBRARIES_OF = {'rp': ('no_such_planner',)}; prefork.load(['zx200:rp'])"
+    )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=True)
     assert "no_such_planner is not loaded before programs are forked: No module named" in done.stderr
 
