@@ -14,7 +14,6 @@ import os
 import signal
 import sys
 from collections.abc import Iterable
-from itertools import chain
 from typing import NoReturn
 
 import pydantic
@@ -94,12 +93,14 @@ def _end_with(parent: int) -> None:
 
 def load(processes: Iterable[str]) -> None:
     """Import the libraries of all processes, and those of these single ones: `tms:ur`."""
-    single = [LIBRARIES_OF.get(name.partition(":")[2].partition("_")[0], ()) for name in processes]
-    for name in dict.fromkeys(chain(LIBRARIES, *single)):
-        try:
-            importlib.import_module(name)
-        except ImportError as error:  # the process that needs it fails alone, and is the one to tell why
-            sys.stderr.write(f"{name} is not loaded before programs are forked: {error}\n")
+    for name in LIBRARIES:
+        importlib.import_module(name)
+    for process in {name.partition(":")[2].partition("_")[0] for name in processes}:
+        for name in LIBRARIES_OF.get(process, ()):
+            try:
+                importlib.import_module(name)
+            except ImportError as error:  # the process that needs it fails alone, and is the one to tell why
+                sys.stderr.write(f"{name} is not loaded before programs are forked: {error}\n")
     pydantic.create_model("Loaded", name=(str, ...))  # it imports most of itself with the first model
     for package in INTERFACES:
         for kind in ("msg", "srv", "action"):

@@ -54,7 +54,7 @@ def store_records(ros: Ros, names: list[str]) -> None:
 
 
 def start(ros: Ros, scheduler: Scheduler, runs: int) -> list[Call]:
-    """The machines of a scheduler dealt out to runs of it, until all of them go."""
+    """The machines of a scheduler dealt out to runs of it."""
     names = sorted(scheduler.machines)
     hands = [names[number::runs] for number in range(min(runs, len(names)))]
     peer = ros.peer(ExecuteTask, scheduler.named("execute_task"))
