@@ -13,7 +13,7 @@ from tms_cli.drill.busy import stood_still
 from tms_cli.drill.history import FOLDER, Hit, happenings, keep
 from tms_cli.drill.hits import BACK_LIMIT, Hits, power_off
 from tms_cli.drill.operasim import OperaSim
-from tms_cli.drill.plan import NONE, TROUBLES, TS, How, StopScenario, Trial
+from tms_cli.drill.plan import NONE, SUBTASK, TROUBLES, TS, How, StopScenario, Trial
 from tms_cli.drill.record import TrialRecording
 from tms_cli.drill.stop_observer import StopObserver
 from tms_cli.drill.verdict import (
@@ -61,7 +61,6 @@ class Struck:
     hit: "Future[float]" = field(default_factory=Future)  # s since 1970
     back: "Future[float | None]" = field(default_factory=Future)  # s from the hit
     processes: tuple[str, ...] = ()  # that are hit
-    chosen: float = math.inf  # when those were chosen, s since 1970
     started: dict[str, float] = field(default_factory=dict)  # when those that were killed were seen again, s since 1970
 
 
@@ -136,7 +135,6 @@ class Hand:
             struck.hit.set_result(power_off(pids))
             struck.back.set_result(self._hits.power_on(pids, struck.hit.result(), struck.started))
         else:
-            struck.chosen = unix_time()
             found = self._hits.pids(self._hits.names(stop, {hand.machine: hand.work.subtask for hand in hands}))
             struck.processes = tuple(found)
             until(at)
@@ -171,12 +169,20 @@ class Hand:
         self._note_history(trial, struck)
         stops = [one.begun for one in record.receipts]
         busy = "" if stop.moves else stood_still(self._site, self.machine, stops)
+        elsewhere = self._elsewhere(trial, struck)
         row = judge(TrialFacts(
-            trial, self.model, record, begun, hit, stopped, self._ends, back, outcome, busy, struck.chosen
+            trial, self.model, record, begun, hit, stopped, self._ends, back, outcome, busy, elsewhere
         ))  # fmt: skip
         if row.false_receipt or (row.unconfirmed and row.in_order) or row.ran_on:
             self._keep(record, hit)
         return row
+
+    def _elsewhere(self, trial: Trial, struck: Struck) -> str:
+        """The subtask behind the motion at the hit, where that was not hit, since the feedback with it came late."""
+        if trial.stop.processes != (SUBTASK,):
+            return ""
+        behind = self.work.behind(struck.hit.result())
+        return "" if behind in struck.processes else behind
 
     def _note_history(self, trial: Trial, struck: Struck) -> None:
         """Keep what happened since the begin of the run; without the run's own history it says nothing."""

@@ -6,7 +6,7 @@ from dataclasses import asdict, dataclass, field
 from itertools import pairwise
 from typing import Any
 
-from tms_cli.drill.plan import IN_ORDER, NONE, RC, SUBTASK, How, Trial
+from tms_cli.drill.plan import IN_ORDER, NONE, RC, How, Trial
 from tms_cli.drill.record import MotionSample, Receipt, TrialRecording
 from tms_cli.words import english
 
@@ -40,7 +40,7 @@ class TrialFacts:
     back_s: float | None
     outcome: str
     busy: str = ""  # evidence that this PC itself may have stopped the machine
-    chosen: float = math.inf  # when the processes to be hit were chosen: those behind the motion of that time
+    elsewhere: str = ""  # the subtask behind the motion, where another one was hit
 
     @property
     def watched(self) -> float:
@@ -140,9 +140,8 @@ def void(facts: TrialFacts) -> str:
         return f"its true motion was not received for {gap:.1f} s"
     if _stood(facts) and (facts.trial.fault == NONE or not record.receipts):  # the fault itself may have stopped it
         return "it was stopped before the hit"
-    only_subtask = facts.trial.stop.processes == (SUBTASK,) and not record.receipts
-    if only_subtask and any(facts.chosen < goal.began <= facts.hit for goal in record.goals.values()):
-        return "its next motion, which another subtask may stand behind, began just before the hit"
+    if facts.elsewhere and not record.receipts:
+        return f"its run had gone on to {facts.elsewhere} before the hit"
     due = any(
         goal.began <= facts.begun and not (goal.arrived and (goal.ended or 0.0) < facts.stop + BY_ITSELF)
         for goal in record.goals.values()

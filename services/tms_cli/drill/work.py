@@ -3,6 +3,7 @@
 import json
 
 from std_msgs.msg import String
+from tms_msg_db.msg import Event
 from tms_msg_db.srv import AddTask
 from tms_msg_ts.action import ExecuteTask
 from tms_msg_ts.srv import CancelRun
@@ -18,6 +19,7 @@ from tms_cli.drill.verdict import INTERRUPTED
 from tms_cli.reasons import RunDoesNotEnd
 from tms_config.clock import monotonic, sleep
 from tms_config.config import Site
+from tms_decision.reasons import GoalSent
 from tms_reason import wire
 from tms_reason.errors import TmsError
 from tms_ros.client import Call
@@ -56,7 +58,7 @@ class Work:
         self._run = ""
         self.lost = False  # its scheduler was lost, so that only the history has its end
         self.untold = False  # the database gave no answer when it was asked last
-        self.subtask = next(iter(self._subtasks.values()))  # the process behind the motion
+        self.subtask = self._first()  # the process behind the motion
 
     def be(self, fault: str) -> None:
         """Set the fault of the stand-in; `none` removes it. The simulator's machines have no faults."""
@@ -73,9 +75,12 @@ class Work:
         """
         self.arm()
         self._peer.wait_ready(SERVER_LIMIT)
-        self._run, self.lost, self.untold = "", False, False
+        self._run, self.lost, self.untold, self.subtask = "", False, False, self._first()
         goal = ExecuteTask.Goal(task_id=self._task, ignore_warnings=True)
         self._call = send(self._peer, goal, self._received)
+
+    def _first(self) -> str:
+        return next(iter(self._subtasks.values()))
 
     def cancel(self) -> None:
         """Cancel the run; returns at once."""
@@ -135,14 +140,23 @@ class Work:
 
     def history(self) -> list[tuple[float, str]]:
         """When the run entered which states, by its journal: s since 1970, and codes; empty: not known."""
+        reasons = [(time_of(row.stamp), wire.known(row.text)) for row in self._events("run")]
+        return [(at, (why.state if isinstance(why, StateBecause) else why).code) for at, why in reasons]
+
+    def behind(self, at: float) -> str:
+        """The subtask that the run had sent a goal of a motion last by a moment (s since 1970); empty: not known."""
+        sent = [row for row in self._events("goal") if isinstance(wire.known(row.text), GoalSent)]
+        by_then = [row.node for row in sent if row.node in self._subtasks and time_of(row.stamp) <= at]
+        return self._subtasks[by_then[-1]] if by_then else ""
+
+    def _events(self, kind: str) -> list[Event]:
+        """The events of one kind in the journal of the run; none where it is not known."""
         if not self._run:
             return []
         try:
-            rows = [row for row in journal(self._node, self._run) if row.kind == "run"]
+            return [row for row in journal(self._node, self._run) if row.kind == kind]
         except TmsError:
             return []  # the database may have been hit
-        reasons = [(time_of(row.stamp), wire.known(row.text)) for row in rows]
-        return [(at, (why.state if isinstance(why, StateBecause) else why).code) for at, why in reasons]
 
     def _received(self, feedback: ExecuteTask.Feedback) -> None:
         self._run = feedback.run_id or self._run

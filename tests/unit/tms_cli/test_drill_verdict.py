@@ -178,14 +178,13 @@ def test_a_motion_that_had_ended_by_itself_proves_nothing() -> None:
 
 
 def test_a_subtask_that_was_hit_after_its_goal_proves_nothing() -> None:
-    """The drill had chosen the subtask of the last motion, and the next one began before the hit."""
+    """The feedback of the run had come late: by the hit, another subtask stood behind the motion."""
     subtask = StopScenario(How.KILL, (SUBTASK,))
-    found = facts(truth((0.0, 6.0)), stop_kind=subtask, chosen=HIT - 1.5)
-    assert "began just before the hit" in judge(found).void and wrong(judge(found)) == set()
-    for chosen, kind in ((HIT - 0.5, subtask), (HIT - 1.5, KILL)):
-        valid = facts(truth((0.0, 6.0)), stop_kind=kind, chosen=chosen)
-        assert judge(valid).void == "" and wrong(judge(valid))
-    stopped = facts(truth((0.0, 1.0)), receipt(), stop_kind=subtask, chosen=HIT - 1.5)
+    found = facts(truth((0.0, 6.0)), stop_kind=subtask, elsewhere="zx200:swing")
+    assert judge(found).void == "its run had gone on to zx200:swing before the hit" and wrong(judge(found)) == set()
+    valid = facts(truth((0.0, 6.0)), stop_kind=subtask)
+    assert judge(valid).void == "" and wrong(judge(valid))
+    stopped = facts(truth((0.0, 1.0)), receipt(), stop_kind=subtask, elsewhere="zx200:swing")
     assert judge(stopped).void == "" and wrong(judge(stopped)) == set()
 
 
