@@ -235,8 +235,8 @@ containers: ## the system packages of test-docker: a Docker engine, Compose and 
 test-docker: setup containers ## a site of four PCs as containers; starts a Docker engine where none runs
 	@DOCKER=$(DOCKER) $(PY) -m pytest -p no:randomly -m docker -s --durations=0 tests/docker
 
-fleet: setup containers ## how many machines four PCs carry, each with a scheduler: containers on this PC (MACHINES="40 100")
-	@TMS_FLEET="$(or $(MACHINES),40 60 80 100)" DOCKER=$(DOCKER) $(PY) -m pytest -p no:randomly -m docker -s tests/docker/test_fleet.py
+fleet: setup containers ## how many machines four PCs carry, each with a scheduler: containers on this PC (MACHINES="40 60")
+	@TMS_FLEET="$(or $(MACHINES),40 60)" DOCKER=$(DOCKER) $(PY) -m pytest -p no:randomly -m docker -s tests/docker/test_fleet.py
 
 clean: down ## remove the environments and the demo's state (SITE=name: that site's)
 	rm -rf $(VENV) $(VENV)-store $(VENV)-console node_modules $(dir $(BUILT)) .state/$(basename $(notdir $(or $(SITE),demo)))

@@ -50,17 +50,14 @@ class Fleet(Yard):
 
     @contextmanager
     def crowds(self) -> Iterator[list[subprocess.Popen[str]]]:
-        """All machines, each on the PC of its scheduler."""
+        """All machines, each on the PC of its scheduler; ten at a time, as a site does not appear at once."""
         with ExitStack() as stack:
-            crowds = [
-                stack.enter_context(
-                    self._program(pc, "crowd.py", names[i], ",".join(SUBTASKS), *names[i : i + A_PROCESS])
-                )
-                for pc, names in self.shares.items()
-                for i in range(0, len(names), A_PROCESS)
-            ]
-            for crowd in crowds:
-                assert _line(crowd) == "ready"
+            crowds = []
+            for pc, names in self.shares.items():
+                for i in range(0, len(names), A_PROCESS):
+                    words = names[i], ",".join(SUBTASKS), *names[i : i + A_PROCESS]
+                    crowds.append(stack.enter_context(self._program(pc, "crowd.py", *words)))
+                    assert _line(crowds[-1]) == "ready"
             yield crowds
 
     @contextmanager

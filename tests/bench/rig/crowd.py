@@ -19,10 +19,12 @@ from tms_msg_rc.msg import MachineState, StopReceipt
 from tms_msg_rc.srv import StopMachine
 from tms_msg_ts.action import LeafNodeBase
 
+from tms_config.config import load_site
 from tms_machine.permit import Permit
 from tms_ros.goals import Ended, Outcome
 from tms_ros.node import Ros
 from tms_ros.server import Goal
+from tms_runtime import environment
 from tms_runtime.pulse import Pulse
 
 STATE_PERIOD = 0.2  # s, as gateways tell their states
@@ -71,6 +73,7 @@ class Machine:
 
 
 def main(name: str, subtasks: str, *names: str) -> None:
+    environment.enter(load_site())
     ros = Ros(f"crowd_{name}")
     machines = [Machine(ros, machine, subtasks.split(",")) for machine in names]
 

@@ -26,7 +26,7 @@ from tms_schedulers.names import Scheduler, schedulers
 
 JOINTS = {"boom": -46.0, "swing": 0.0, "arm": 114.0, "bucket": 46.0}  # deg
 SUBTASKS = [f"st_zx200_sample_{joint}" for joint in JOINTS]
-LIMIT, END_LIMIT = 60.0, 20.0  # s; the second for the runs to end after a stop
+LIMIT, END_LIMIT = 180.0, 20.0  # s; the first only bounds a hang, the second is for the runs to end after a stop
 LEAF = '<Action ID="LeafNodeZx200" model_name="{}" record_name="BENCH" subtask_name="{}"/>'
 
 
