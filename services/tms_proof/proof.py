@@ -49,14 +49,15 @@ class Proof:
         return replace(self, start=max(self.start, start), unseen=max(self.unseen, start))
 
     def after(self, other: "Proof") -> "Proof":
-        """What must be seen if another stop was commanded before: the motion that it waits for may still come."""
-        if self.immediate:
-            return self
+        """What must be seen if another stop was commanded before: the motion that it waits for may still come.
+
+        An immediate stop cancels what was on its way, but not the doubt whether the sources tell what moves.
+        """
         since = [one for one in (self.expected.since, other.expected.since) if one is not None]
         mine, others = self.expected.to_come, other.expected.to_come
         behind = {**other.expected.behind, **self.expected.behind}  # of each joint, its last goal
         to_come = {name: max(mine.get(name, 0.0), others.get(name, 0.0)) for name in {*mine, *others}}
-        return Proof(
-            max(self.start, other.start), max(self.unseen, other.unseen),
-            Expected(max(since, default=None), to_come, behind), max(self.seconds, other.seconds),
-        )  # fmt: skip
+        expected = Expected(max(since, default=None), {} if self.immediate else to_come, behind)
+        start = self.start if self.immediate else max(self.start, other.start)
+        unseen = max(self.unseen, other.unseen)
+        return Proof(start, unseen, expected, max(self.seconds, other.seconds), self.immediate)

@@ -115,6 +115,14 @@ def test_a_motion_that_no_source_has_shown_is_waited_for(seed: int) -> None:
     assert Schedule(seed).run().violation == ""
 
 
+def test_a_press_ends_no_doubt_that_the_stop_before_it_has() -> None:
+    """A frozen gateway got the host agent's press while it proved a stop, and the machine replayed its record.
+
+    It stops at once by its facts, but it went on for a while, and nobody had seen it move.
+    """
+    assert Schedule(21136676).run().violation == ""
+
+
 def test_the_end_of_the_last_motion_shows_no_effect_of_a_stop() -> None:
     """The next goal had just left, to a machine that stops at once by its facts, and goes on for a while."""
     assert Schedule(778600196).run().violation == ""

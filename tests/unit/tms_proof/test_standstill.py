@@ -436,7 +436,9 @@ def test_a_second_stop_waits_for_what_the_first_one_waits_for() -> None:
     assert both.expected == Expected(99.0, {"boom": 0.2})
     cuts = watch(immediate=True)
     pressed = cuts.proof(100.5, strongest=True)
-    assert pressed.after(first) is pressed  # nothing that was on its way comes any more
+    both = pressed.after(first)
+    assert both.start == pressed.start and both.expected.to_come == {}  # nothing that was on its way comes any more
+    assert (both.expected.since, both.unseen) == (99.0, pressed.unseen)  # but what has come must have been seen
 
 
 def test_what_was_commanded_before_the_stop_and_seen_after_it_is_believed() -> None:
