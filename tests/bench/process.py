@@ -4,8 +4,8 @@ Of the hungriest process, which is a gateway, it is a bare node that does nothin
 
 A site with one excavator, two dump trucks and every subtask of theirs; the first 40 processes are timed until they are
 ready. Then all are idle: the machines tell their state and the metrics are scraped as Prometheus does. The stand-ins of
-machines and the embedded store count for neither memory nor the idle core, since a site has none. A process with a node
-of its own takes at least what a bare node takes that does nothing: that is the floor of all together.
+machines and the embedded store count for neither memory nor the idle core, since a site has none. The floor of all
+together are bare nodes that do nothing, of which as many as there are gateways hear a machine each.
 """
 
 from __future__ import annotations
@@ -101,7 +101,7 @@ def _costs(own: Rig, rows: list[Process], bare: int, hearing: int) -> Iterable[F
     yield Figure("idle, a subtask (p50)", "% core", at(0.5, subtasks), 1.0, floor)
     least = floor * count + received * 2 * len(MACHINES)  # each machine is heard by its gateway and by tms:sp
     told = f"{total:.1f} of {least:.1f} % of a core"
-    share = floor * count / least
+    share = (floor * count + (received - floor) * len(MACHINES)) / least
     yield Figure(f"idle, all {count}, of as many bare nodes", "", total / least, SHARE, share, note=told)
 
 
