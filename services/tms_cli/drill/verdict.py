@@ -152,8 +152,12 @@ def void(facts: TrialFacts) -> str:
 def _stood(facts: TrialFacts) -> bool:
     """Whether every goal had ended before the hit, and the machine stood from then on."""
     record, fresh = facts.record, facts.record.goal_after(facts.hit)
-    at_work = any(one.began <= facts.hit and (one.ended or math.inf) > facts.hit for one in record.goals.values())
-    return not at_work and not any(facts.hit <= one.at < fresh and moves(one) for one in record.truth)
+    return not _at_work(facts) and not any(facts.hit <= one.at < fresh and moves(one) for one in record.truth)
+
+
+def _at_work(facts: TrialFacts) -> bool:
+    """Whether a goal was open at the hit."""
+    return any(one.began <= facts.hit < (one.ended or math.inf) for one in facts.record.goals.values())
 
 
 def moves(sample: MotionSample) -> bool:
@@ -189,7 +193,7 @@ def _reports(moved: float, noticed: float, record: TrialRecording) -> bool:
 def reported(facts: TrialFacts) -> float | None:
     """Seconds from a signal to the first stop command; None where none was due, or one came before."""
     stop, commands = facts.trial.stop, facts.record.commands
-    if stop.how not in (How.KILL, How.FREEZE) or not (stop.moves and stop.covered):
+    if stop.how not in (How.KILL, How.FREEZE) or not (stop.moves and stop.covered) or not _at_work(facts):
         return None
     return commands[0] - facts.hit if commands and commands[0] >= facts.hit else None
 

@@ -188,6 +188,14 @@ def test_a_subtask_that_was_hit_after_its_goal_proves_nothing() -> None:
     assert judge(stopped).void == "" and wrong(judge(stopped)) == set()
 
 
+def test_a_loss_while_no_goal_moves_the_machine_is_not_measured() -> None:
+    """A planner that is killed while it plans: the stop that follows ends no motion, and nobody hurries."""
+    found = facts(truth((0.0, 2.0)), receipt())
+    assert judge(found).reported_s == pytest.approx(0.6)
+    found.record.goals[b"1"] = Goal(HIT - 5.0, HIT - 0.1, arrived=True)
+    assert judge(found).void == "" and judge(found).reported_s is None
+
+
 def test_a_machine_that_was_stopped_before_proves_nothing() -> None:
     found = facts(truth((0.0, 0.4)), receipt())
     found.record.states.insert(0, ReportedState(HIT - 0.1, "joint states are silent", ""))
