@@ -123,6 +123,11 @@ def test_a_press_ends_no_doubt_that_the_stop_before_it_has() -> None:
     assert Schedule(21136676).run().violation == ""
 
 
+def test_who_gives_a_machine_back_while_the_disk_stalls_is_answered_in_time() -> None:
+    """The stop could not be proven, and its time began when the disk had answered."""
+    assert Schedule(21300211).run().violation == ""
+
+
 def test_the_end_of_the_last_motion_shows_no_effect_of_a_stop() -> None:
     """The next goal had just left, to a machine that stops at once by its facts, and goes on for a while."""
     assert Schedule(778600196).run().violation == ""

@@ -1,5 +1,6 @@
 """What a person does at a stopped machine: re-arm it, take it to drive it by hand, give it back."""
 
+from tms_decision import STOP_PROVEN
 from tms_decision import reasons as r
 from tms_decision.gateway import notes, stops
 from tms_decision.gateway.effects import Emergency, Publish, Rearmed, Taken
@@ -97,33 +98,30 @@ def _keeps_from_arming(gateway: Gateway, now: float) -> Reason | None:
     return None
 
 
-# by hand
-
-
 def take(gateway: Gateway, now: float, asked: TakeAsked) -> None:
     """Let a person drive the machine, or end that; the gateway still watches it, but no command opposes the person."""
     wrong = _keeps_from_giving(gateway) if asked.back else _keeps_from_taking(gateway, now, asked.who)
     if wrong is not None:
         gateway.do(Taken(asked.request, wrong))
         return
-    note = notes.drive(gateway, "" if asked.back else asked.who)
-    gateway.takes[note] = asked.request, asked.who, asked.back
+    gateway.takes[notes.drive(gateway, "" if asked.back else asked.who)] = asked, now
 
 
-def _taken(gateway: Gateway, now: float, problem: Reason | None, request: int, who: str, back: bool) -> None:
+def _taken(gateway: Gateway, now: float, problem: Reason | None, asked: TakeAsked, since: float) -> None:
     wrong: Reason | None = r.NotKept(problem) if problem is not None else None
-    # A goal may have begun meanwhile.
-    if wrong is None and not back and (wrong := _keeps_from_taking(gateway, now, who)) is not None:
-        notes.drive(gateway, "")
+    if wrong is None and not asked.back and (wrong := _keeps_from_taking(gateway, now, asked.who)) is not None:
+        notes.drive(gateway, "")  # a goal has begun meanwhile
     if wrong is not None:
-        gateway.do(Taken(request, wrong))
-    elif back:
+        gateway.do(Taken(asked.request, wrong))
+    elif asked.back:
         gateway.by_hand = None
-        stops.stop(gateway, now, r.GivenBack(who), StopKind.PLAIN).requests.append(request)
+        made = stops.stop(gateway, now, r.GivenBack(asked.who), StopKind.PLAIN)
+        made.requests.append(asked.request)
+        made.limit = max(since + STOP_PROVEN, now + gateway.watch.settles)  # the person has waited for the disk, too
     else:
-        gateway.by_hand = Foreign(who)
-        gateway.log("taken", who=who)
-        gateway.do(Taken(request), Publish())
+        gateway.by_hand = Foreign(asked.who)
+        gateway.log("taken", who=asked.who)
+        gateway.do(Taken(asked.request), Publish())
 
 
 def _keeps_from_taking(gateway: Gateway, now: float, who: str) -> Reason | None:

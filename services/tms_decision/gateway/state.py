@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from enum import Enum
 
 from tms_decision.gateway.effects import Effect, Log, Look, Receipt
-from tms_decision.gateway.events import Beat, GoalAsked, RearmAsked
+from tms_decision.gateway.events import Beat, GoalAsked, RearmAsked, TakeAsked
 from tms_decision.latch import Latch
 from tms_decision.owner import Owner, parse
 from tms_decision.permit_link import PermitLink
@@ -168,7 +168,7 @@ class Gateway:
     stops: list[Stop] = field(default_factory=list)
     numbered: int = 0  # stops so far
     rearms: list[Rearm] = field(default_factory=list)
-    takes: dict[int, tuple[int, str, bool]] = field(default_factory=dict)  # by note: request, who, back
+    takes: dict[int, tuple[TakeAsked, float]] = field(default_factory=dict)  # by note, and when it was asked
     doubts: list[Doubt] = field(default_factory=list)
     run: int | None = None  # the run that holds the machine
     pressed: float = float("-inf")  # when a software stop was last received

@@ -521,6 +521,22 @@ def test_a_person_takes_the_machine_and_gives_it_back() -> None:
     assert rig.all(f.KeepDriver)[-1].who == ""
 
 
+@pytest.mark.parametrize(("stalls", "mute", "waits"), [(3.0, True, 7.1), (12.0, False, 4.1)])
+def test_who_gives_it_back_waits_for_the_disk_and_for_the_proof_together(
+    stalls: float, mute: bool, waits: float
+) -> None:
+    rig = ready()
+    rig.happens(e.TakeAsked(1, "Sato", False))
+    rig.disk_answers = False
+    rig.happens(e.TakeAsked(2, "Sato", True))
+    rig.run(stalls)
+    rig.plant.fault.mute, rig.disk_answers = mute, True
+    rig.happens(e.NoteKept(rig.all(f.KeepDriver)[-1].number))
+    assert not rig.all(f.Stopped)
+    rig.run(waits)
+    assert rig.all(f.Stopped)[-1].receipt.confirmed is not mute
+
+
 def test_a_machine_with_a_goal_is_not_taken() -> None:
     rig = ready().moving()
     rig.happens(e.TakeAsked(1, "Sato", False))
