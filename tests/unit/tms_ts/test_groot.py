@@ -16,6 +16,7 @@ import zmq
 from lxml import etree
 
 from conformance.scripted import scripted_registry
+from conftest import ports_of
 from tms_ts.bt import IDLE, RUNNING, SUCCESS, Tree, load
 from tms_ts.groot import groot1
 from tms_ts.groot.groot2 import Groot2
@@ -29,21 +30,9 @@ SLOW = '<root main_tree_to_execute="M"><BehaviorTree ID="M"><Sequence name="all"
 
 
 @pytest.fixture
-def port() -> int:
-    """First of four free ports."""
-    for first in range(31000, 32000, 10):
-        found = [socket.socket() for _ in range(4)]
-        try:
-            for more, one in enumerate(found):
-                one.bind(("127.0.0.1", first + more))
-        except OSError:
-            continue
-        else:
-            return first
-        finally:
-            for one in found:
-                one.close()
-    raise AssertionError("no free ports")
+def port(own_domain: int) -> int:
+    """First of many ports that no other test uses."""
+    return ports_of(own_domain)
 
 
 @pytest.fixture
