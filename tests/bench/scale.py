@@ -3,7 +3,8 @@
 The scheduler, the database and the store are the real ones; machines, gateways and subtasks are at the level of
 messages (rig/crowd.py), since 50 times their processes would not fit on a PC. The group `stop` has 20 real gateways.
 A goal takes 10 s, as a motion of a machine does: 50 machines ask for 5 hand-overs a second. The floor is the same site
-with one machine. Of two schedulers, that share the machines, the figures are those of the one that does worse.
+with one machine; that of the memory is a bare node with as many ends of the same names and types beside the same
+machines. Of two schedulers, that share the machines, the figures are those of the one that does worse.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ from pathlib import Path
 
 import psutil
 from prometheus_client.parser import text_string_to_metric_families
+from rclpy.node import Node
 
 from bench.rig import dispatcher
 from bench.rig.dispatcher import END_LIMIT, LIMIT, SUBTASKS
@@ -36,6 +38,7 @@ A_PROCESS = 10  # machines in one process of the crowd
 SETTLE, WATCH = 2.0, 12.0  # s
 SLOW = 0.25  # s; p99 of the hand-overs is below it if at most 1 % are above it
 CROWD, FORKS = (Path(__file__).parent / "rig" / name for name in ("crowd.py", "forks.py"))
+GONE = 6.0  # s after which discovery has dropped a process that was killed
 
 
 @dataclass(frozen=True)
@@ -50,6 +53,7 @@ class Cost:
     left: int  # runs that have not ended END_LIMIT after the stop
     cpu: float  # % of a core, a scheduler's
     memory: float  # MB, a scheduler's
+    bare: float  # MB, of a bare node with the same ends
 
 
 def measure() -> Iterable[Figure]:
@@ -65,19 +69,19 @@ def measure() -> Iterable[Figure]:
         yield Figure("  stop heard by the last machine", "ms", cost.received, 50.0, least.received, usual_floor=10.0)
         yield Figure("  stop until the last goal ends", "ms", cost.cancelled, 700.0, least.cancelled)
         yield Figure(f"  runs left after {END_LIMIT:.0f} s", "", float(cost.left), 0.5)
-        yield Figure("  memory (PSS) of tms:ts", "MB", cost.memory, 120.0, least.memory)
+        yield Figure("  memory (PSS) of tms:ts", "MB", cost.memory, 120.0, cost.bare)
 
 
 def _cost(size: int, count: int) -> Cost:
     names = [f"m{number}" for number in range(size)]
     shares = [names[number::count] for number in range(count)]
-    with _site(shares) as own, ExitStack() as stack:
+    with _site(shares) as own, ExitStack() as beside, ExitStack() as stack:
         pids = {"tms:ts": stack.enter_context(_processes(own, dict(os.environ), "tms:store", "tms:db", "tms:ts"))[-1]}
         if count > 1:
             second = f"tms:ts_{SECOND}"
             pids[second] = stack.enter_context(_processes(own, own.mesh.environment_of(SECOND), second))[-1]
         crowds = [
-            stack.enter_context(_crowd(own, names[i], ",".join(SUBTASKS), *names[i : i + A_PROCESS]))
+            beside.enter_context(_crowd(own, names[i], ",".join(SUBTASKS), *names[i : i + A_PROCESS]))
             for i in range(0, size, A_PROCESS)
         ]
         for crowd in crowds:
@@ -89,9 +93,39 @@ def _cost(size: int, count: int) -> Cost:
         time.sleep(SETTLE)
         rows = {find(own.site, name): pid for name, pid in pids.items()}
         late, handed_over, slow, cpu = map(max, zip(*watched(rows), strict=True))
-        memory = max(psutil.Process(pid).memory_full_info().pss / 1e6 for pid in pids.values())
+        memory, largest = max((_pss(pid), name) for name, pid in pids.items())
+        ends = _ends(ros.node, largest.replace(":", "_"))
         received, cancelled = after_press(dispatcher.press(ros, len(crowds)), crowds)
-        return Cost(late, handed_over, slow, received, cancelled, dispatcher.left(calls), cpu, memory)
+        left = dispatcher.left(calls)
+        stack.close()
+        bare = _bare(own, ends)
+        return Cost(late, handed_over, slow, received, cancelled, left, cpu, memory, bare)
+
+
+def _ends(node: Node, name: str) -> dict[str, list[tuple[str, str]]]:
+    """What another node has in DDS, by kind: names and types."""
+    graph = {
+        "publisher": node.get_publisher_names_and_types_by_node,
+        "subscription": node.get_subscriber_names_and_types_by_node,
+        "service": node.get_service_names_and_types_by_node,
+        "client": node.get_client_names_and_types_by_node,
+    }
+    return {kind: [(one, types[0]) for one, types in found(name, "/")] for kind, found in graph.items()}
+
+
+def _bare(own: Rig, ends: dict[str, list[tuple[str, str]]]) -> float:
+    """MB of a bare node with these ends."""
+    time.sleep(GONE)
+    file = Path(own.mesh.state) / "ends.json"
+    file.write_text(json.dumps(ends), encoding="utf-8")
+    with own.beside("same", str(file)) as (pid, _):
+        time.sleep(SETTLE + WATCH)
+        return _pss(pid)
+
+
+def _pss(pid: int) -> float:
+    """MB of a process; what it shares counts for its part."""
+    return float(psutil.Process(pid).memory_full_info().pss) / 1e6
 
 
 def _site(shares: list[list[str]]) -> AbstractContextManager[Rig]:

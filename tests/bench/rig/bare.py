@@ -3,6 +3,7 @@
 python bare.py node                      a node that does nothing
 python bare.py hear JOINTS ODOM          a node that hears the joint states and the odometry of one machine
 python bare.py serve                     an action /bare/act that succeeds at once and a service /bare/get
+python bare.py same FILE                 a node with the ends (names and types by kind, as JSON) of another one
 python bare.py act COUNT                 one goal after another; prints their milliseconds as JSON
 python bare.py link NAME [NEXT]          an action server that reads /bare/get if it is the first, accepts, and passes
                                          each goal on to NEXT; without NEXT the goal succeeds at once
@@ -13,11 +14,14 @@ python bare.py get SERVICE MODEL RECORD COUNT   one GetParameter after another; 
 from __future__ import annotations
 
 import ctypes
+import importlib
 import json
 import os
 import signal
 import sys
 import time
+from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import rclpy
@@ -35,6 +39,7 @@ from tms_msg_ts.action import LeafNodeBase
 DEPTH = QoSProfile(depth=100)
 LIMIT = 60.0  # s for a floor to be measured
 BEGUN = time.perf_counter()  # everything is imported; the node is made now
+PARTS = {"SendGoal": "SendGoalService", "GetResult": "GetResultService", "FeedbackMessage": "FeedbackMessage"}
 WARM = 10  # rounds that do not count
 
 
@@ -42,6 +47,28 @@ def receive(node: Node, joints: str, odom: str) -> None:
     node.create_subscription(JointState, joints, lambda _: None, qos_profile_sensor_data)
     node.create_subscription(Odometry, odom, lambda _: None, qos_profile_sensor_data)
     rclpy.spin(node)
+
+
+def same(node: Node, file: str) -> None:
+    making: dict[str, Callable[[Any, str], object]] = {
+        "publisher": lambda kind, name: node.create_publisher(kind, name, qos_profile_action_status_default),
+        "subscription": lambda kind, name: node.create_subscription(kind, name, lambda _: None, 1),
+        "service": lambda kind, name: node.create_service(kind, name, lambda _, response: response),
+        "client": node.create_client,
+    }
+    ends = json.loads(Path(file).read_text(encoding="utf-8"))
+    node.kept = [making[kind](_type(one), name) for kind, found in ends.items() for name, one in found]
+    rclpy.spin(node)
+
+
+def _type(name: str) -> Any:
+    """The class of `std_msgs/msg/Bool`, or of a hidden part of an action."""
+    package, kind, last = name.split("/")
+    module = importlib.import_module(f"{package}.{kind}")
+    if kind != "action":
+        return getattr(module, last)
+    action, _, part = last.rpartition("_")
+    return getattr(getattr(module, action).Impl, PARTS[part])
 
 
 def serve(node: Node) -> None:
@@ -202,7 +229,7 @@ def _run(node: Node, ready: Any, first: Any, rounds: Rounds) -> list[float]:
     return rounds.times[WARM:]
 
 
-STAY = {"node": rclpy.spin, "hear": receive, "serve": serve, "link": link}
+STAY = {"node": rclpy.spin, "hear": receive, "same": same, "serve": serve, "link": link}
 
 
 def main(what: str, *words: str) -> None:
