@@ -150,7 +150,7 @@ def _consoles(mesh: Mesh, port: int) -> Figure:
     server = psutil.Process(next(row["pid"] for row in rows if row["name"] == "tms:ur"))
     floor = _load(server)
     leave = threading.Event()
-    threads = [threading.Thread(target=_look, args=(port, leave), daemon=True) for _ in range(CONSOLES)]
+    threads = [threading.Thread(target=look, args=(port, leave), daemon=True) for _ in range(CONSOLES)]
     for thread in threads:
         thread.start()
     time.sleep(2)
@@ -187,7 +187,7 @@ def _load(process: psutil.Process) -> float:
     return (sum(process.cpu_times()[:2]) - before) / (time.monotonic() - begun) * 100
 
 
-def _look(port: int, leave: threading.Event) -> None:
+def look(port: int, leave: threading.Event) -> None:
     with socket.create_connection(("127.0.0.1", port), 10) as console:
         console.sendall(f"GET /api/events HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\n\r\n".encode())
         while not leave.is_set():

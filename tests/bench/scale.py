@@ -76,12 +76,12 @@ def _cost(size: int, count: int) -> Cost:
     names = [f"m{number}" for number in range(size)]
     shares = [names[number::count] for number in range(count)]
     with _site(shares) as own, ExitStack() as beside, ExitStack() as stack:
-        pids = {"tms:ts": stack.enter_context(_processes(own, dict(os.environ), "tms:store", "tms:db", "tms:ts"))[-1]}
+        pids = {"tms:ts": stack.enter_context(processes(own, dict(os.environ), "tms:store", "tms:db", "tms:ts"))[-1]}
         if count > 1:
             second = f"tms:ts_{SECOND}"
-            pids[second] = stack.enter_context(_processes(own, own.mesh.environment_of(SECOND), second))[-1]
+            pids[second] = stack.enter_context(processes(own, own.mesh.environment_of(SECOND), second))[-1]
         crowds = [
-            beside.enter_context(_crowd(own, names[i], ",".join(SUBTASKS), *names[i : i + A_PROCESS]))
+            beside.enter_context(crowd_of(own, names[i], ",".join(SUBTASKS), *names[i : i + A_PROCESS]))
             for i in range(0, size, A_PROCESS)
         ]
         for crowd in crowds:
@@ -93,7 +93,7 @@ def _cost(size: int, count: int) -> Cost:
         time.sleep(SETTLE)
         rows = {find(own.site, name): pid for name, pid in pids.items()}
         late, handed_over, slow, cpu = map(max, zip(*watched(rows), strict=True))
-        memory, largest = max((_pss(pid), name) for name, pid in pids.items())
+        memory, largest = max((pss(pid), name) for name, pid in pids.items())
         ends = _ends(ros.node, largest.replace(":", "_"))
         received, cancelled = after_press(dispatcher.press(ros, len(crowds)), crowds)
         left = dispatcher.left(calls)
@@ -120,10 +120,10 @@ def _bare(own: Rig, ends: dict[str, list[tuple[str, str]]]) -> float:
     file.write_text(json.dumps(ends), encoding="utf-8")
     with own.beside("same", str(file)) as (pid, _):
         time.sleep(SETTLE + WATCH)
-        return _pss(pid)
+        return pss(pid)
 
 
-def _pss(pid: int) -> float:
+def pss(pid: int) -> float:
     """MB of a process; what it shares counts for its part."""
     return float(psutil.Process(pid).memory_full_info().pss) / 1e6
 
@@ -141,7 +141,7 @@ def _site(shares: list[list[str]]) -> AbstractContextManager[Rig]:
 
 
 @contextmanager
-def _processes(own: Rig, env: dict[str, str], *names: str) -> Iterator[list[int]]:
+def processes(own: Rig, env: dict[str, str], *names: str) -> Iterator[list[int]]:
     """Processes of the mesh; their pids."""
     with _program(own, env, FORKS, *names) as forks:
         assert forks.stdin is not None
@@ -154,7 +154,7 @@ def _processes(own: Rig, env: dict[str, str], *names: str) -> Iterator[list[int]
 
 
 @contextmanager
-def _crowd(own: Rig, *words: str) -> Iterator[subprocess.Popen[str]]:
+def crowd_of(own: Rig, *words: str) -> Iterator[subprocess.Popen[str]]:
     with _program(own, dict(os.environ), CROWD, *words) as crowd:
         try:
             yield crowd

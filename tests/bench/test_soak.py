@@ -1,12 +1,13 @@
-"""What a long run calls growth."""
+"""What a long run calls growth, and what its kills explain."""
 
 from __future__ import annotations
 
-from soak import Sample, growth, table
+from soak.growth import Sample, growth, table
+from soak.kills import BACK, SEEN, Kills
 
 
-def rows(*memory: float, pid: int = 1) -> list[Sample]:
-    return [Sample(pid, each, 20, 14) for each in memory]
+def rows(*memory: float) -> list[Sample]:
+    return [Sample(each, 20, 14) for each in memory]
 
 
 def test_warming_up_and_noise_are_no_growth() -> None:
@@ -19,12 +20,16 @@ def test_memory_that_grows_is_found() -> None:
 
 
 def test_a_leaked_handle_a_run_is_found() -> None:
-    leaking = [Sample(1, 30, 20 + number, 14) for number in range(9)]
+    leaking = [Sample(30, 20 + number, 14) for number in range(9)]
     assert growth({"tms:ts": leaking}) == ["tms:ts: handles grew from 22.0 to 27.0, allowed are 24.0"]
 
 
-def test_a_restart_is_found() -> None:
-    assert growth({"tms:ts": [*rows(30, 30), *rows(30, pid=2)]}) == ["tms:ts was restarted"]
+def test_a_kill_explains_what_follows_it_and_nothing_else() -> None:
+    kills = Kills(None)  # type: ignore[arg-type]
+    kills.done = [(100.0, "tms:ts")]
+    assert kills.explain_new(100.0 + SEEN, "tms:ts") and kills.explain_late(100.0 + BACK)
+    assert not kills.explain_new(101.0, "tms:db") and not kills.explain_new(99.0, "tms:ts")
+    assert not kills.explain_late(101.0 + BACK) and not kills.explain_late(99.0)
 
 
 def test_the_table_tells_what_each_process_held() -> None:

@@ -25,9 +25,10 @@ from tms_runtime import environment
 from tms_schedulers.names import Scheduler, schedulers
 
 JOINTS = {"boom": -46.0, "swing": 0.0, "arm": 114.0, "bucket": 46.0}  # deg
+RECORDS = {"BENCH": 0.0, "BACK": 25.0}  # deg less of each joint; machines go from one to the other
 SUBTASKS = [f"st_zx200_sample_{joint}" for joint in JOINTS]
 LIMIT, END_LIMIT = 180.0, 20.0  # s; the first only bounds a hang, the second is for the runs to end after a stop
-LEAF = '<Action ID="LeafNodeZx200" model_name="{}" record_name="BENCH" subtask_name="{}"/>'
+LEAF = '<Action ID="LeafNodeZx200" model_name="{}" record_name="{}" subtask_name="{}"/>'
 
 
 def until(holds: Callable[[], bool], what: str) -> None:
@@ -40,17 +41,17 @@ def until(holds: Callable[[], bool], what: str) -> None:
 
 
 def store_records(ros: Ros, names: list[str]) -> None:
-    """The record of each machine."""
-    values = to_parameters({f"zx200_{joint}_goal_pos": angle for joint, angle in JOINTS.items()})
+    """The records of each machine."""
 
-    def stored(name: str) -> bool:
+    def stored(name: str, record: str, less: float) -> bool:
+        values = to_parameters({f"zx200_{joint}_goal_pos": angle - less for joint, angle in JOINTS.items()})
         request = SetParameter.Request(
-            model_name=name, record_name="BENCH", type="static", source="bench", create=True, values=values
+            model_name=name, record_name=record, type="static", source="bench", create=True, values=values
         )
         return not ros.call(SetParameter, "/tms/db/set_parameter", request, LIMIT).error_code
 
-    until(lambda: stored(names[0]), "the database")
-    assert all(stored(name) for name in names[1:])
+    until(lambda: stored(names[0], "BENCH", RECORDS["BENCH"]), "the database")
+    assert all(stored(name, record, less) for name in names for record, less in RECORDS.items())
 
 
 def start(ros: Ros, scheduler: Scheduler, runs: int) -> list[Call]:
@@ -101,10 +102,12 @@ def _goes(call: Call) -> bool:
 
 def _tree(machines: list[str]) -> str:
     """Each machine from subtask to subtask, all of them at once."""
+
+    def leaves(name: str) -> str:
+        return "".join(LEAF.format(name, record, subtask) for record in RECORDS for subtask in SUBTASKS)
+
     rows = [
-        f"<KeepRunningUntilFailure><Sequence>{''.join(LEAF.format(name, subtask) for subtask in SUBTASKS)}</Sequence>"
-        "</KeepRunningUntilFailure>"
-        for name in machines
+        f"<KeepRunningUntilFailure><Sequence>{leaves(name)}</Sequence></KeepRunningUntilFailure>" for name in machines
     ]
     inside = (
         rows[0]

@@ -1,0 +1,1 @@
+"""`make soak MINUTES=n`: two trucks and an excavator work for hours, while processes are killed."""
