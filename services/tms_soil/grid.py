@@ -167,8 +167,10 @@ class Grid:
         self._top[tile] = self._highest(tile)
 
     def top(self, bounds: Bounds) -> float:
-        """A height [m of map] that the ground in and near a rectangle nowhere exceeds."""
+        """A height [m of map] that the ground in and near a rectangle nowhere exceeds; -inf outside the site."""
         i0, i1, j0, j1 = self._cells(bounds)
+        if i0 >= i1 or j0 >= j1:
+            return -math.inf
         tiles = np.ndindex(-(-i1 // CELLS) - i0 // CELLS, -(-j1 // CELLS) - j0 // CELLS)
         return max((self._top[i0 // CELLS + i, j0 // CELLS + j] for i, j in tiles), default=-math.inf)
 

@@ -37,7 +37,7 @@ FIRST, SECOND = "cps", "east"  # PCs of a site of two schedulers
 A_PROCESS = 10  # machines in one process of the crowd
 SETTLE, WATCH = 2.0, 12.0  # s
 SLOW = 0.25  # s; p99 of the hand-overs is below it if at most 1 % are above it
-CROWD, FORKS = (Path(__file__).parent / "rig" / name for name in ("crowd.py", "forks.py"))
+CROWD, DRIVEN, FORKS = (Path(__file__).parent / "rig" / name for name in ("crowd.py", "driven.py", "forks.py"))
 GONE = 6.0  # s after which discovery has dropped a process that was killed
 
 
@@ -154,8 +154,8 @@ def processes(own: Rig, env: dict[str, str], *names: str) -> Iterator[list[int]]
 
 
 @contextmanager
-def crowd_of(own: Rig, *words: str) -> Iterator[subprocess.Popen[str]]:
-    with _program(own, dict(os.environ), CROWD, *words) as crowd:
+def crowd_of(own: Rig, *words: str, kind: Path = CROWD) -> Iterator[subprocess.Popen[str]]:
+    with _program(own, dict(os.environ), kind, *words) as crowd:
         try:
             yield crowd
         finally:

@@ -24,9 +24,11 @@ from tms_ros.node import Ros
 from tms_runtime import environment
 from tms_schedulers.names import Scheduler, schedulers
 
-JOINTS = {"boom": -46.0, "swing": 0.0, "arm": 114.0, "bucket": 46.0}  # deg
-RECORDS = {"BENCH": 0.0, "BACK": 25.0}  # deg less of each joint; machines go from one to the other
-SUBTASKS = [f"st_zx200_sample_{joint}" for joint in JOINTS]
+RECORDS = {  # deg of each joint; machines go from one to the other
+    "BENCH": {"boom": -46.0, "swing": 0.0, "arm": 114.0, "bucket": 46.0},
+    "BACK": {"boom": -20.0, "swing": 90.0, "arm": 80.0, "bucket": 0.0},
+}
+SUBTASKS = [f"st_zx200_sample_{joint}" for joint in RECORDS["BENCH"]]
 LIMIT, END_LIMIT = 180.0, 20.0  # s; the first only bounds a hang, the second is for the runs to end after a stop
 LEAF = '<Action ID="LeafNodeZx200" model_name="{}" record_name="{}" subtask_name="{}"/>'
 
@@ -43,15 +45,15 @@ def until(holds: Callable[[], bool], what: str) -> None:
 def store_records(ros: Ros, names: list[str]) -> None:
     """The records of each machine."""
 
-    def stored(name: str, record: str, less: float) -> bool:
-        values = to_parameters({f"zx200_{joint}_goal_pos": angle - less for joint, angle in JOINTS.items()})
+    def stored(name: str, record: str) -> bool:
+        values = to_parameters({f"zx200_{joint}_goal_pos": angle for joint, angle in RECORDS[record].items()})
         request = SetParameter.Request(
             model_name=name, record_name=record, type="static", source="bench", create=True, values=values
         )
         return not ros.call(SetParameter, "/tms/db/set_parameter", request, LIMIT).error_code
 
-    until(lambda: stored(names[0], "BENCH", RECORDS["BENCH"]), "the database")
-    assert all(stored(name, record, less) for name in names for record, less in RECORDS.items())
+    until(lambda: stored(names[0], "BENCH"), "the database")
+    assert all(stored(name, record) for name in names for record in RECORDS)
 
 
 def start(ros: Ros, scheduler: Scheduler, runs: int) -> list[Call]:
@@ -64,7 +66,9 @@ def start(ros: Ros, scheduler: Scheduler, runs: int) -> list[Call]:
     for hand in hands:
         added = ros.call(AddTask, "/tms/db/add_task", AddTask.Request(task_sequence=_tree(hand)), LIMIT)
         assert not added.error_code, added.error_msg
-        calls.append(peer.send(ExecuteTask.Goal(task_id=added.task_id, ignore_warnings=True)))
+        call = peer.send(ExecuteTask.Goal(task_id=added.task_id, ignore_warnings=True))
+        until(lambda call=call: _goes(call), "the run goes")  # type: ignore[misc]
+        calls.append(call)
     return calls
 
 

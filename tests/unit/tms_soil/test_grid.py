@@ -1,5 +1,7 @@
 """Tiles, windows and heights."""
 
+import math
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -78,9 +80,16 @@ def test_nothing_exceeds_the_top_that_it_tells() -> None:
     assert grid.top((1.0, -12.0, 1.1, -11.0)) > told + 1.0
 
 
-def test_outside_the_site_there_is_nothing() -> None:
+@pytest.mark.parametrize("at", [(7.0, 7.0), (7.0, 0.0), (800.0, 0.0), (0.0, -800.0), (-800.0, 800.0)])
+def test_outside_the_site_there_is_nothing(at: tuple[float, float]) -> None:
     grid = Grid.from_heights(flat(), soils())
-    assert grid.window((7.0, 7.0, 8.0, 8.0)) is None
+    there = (*at, at[0] + 1.0, at[1] + 1.0)
+    assert grid.window(there) is None
+    assert grid.top(there) == -math.inf
+
+
+def test_outside_the_site_no_height_is_known() -> None:
+    grid = Grid.from_heights(flat(), soils())
     assert np.isnan(grid.sample(np.array([7.0, -6.5]), np.array([0.0, 0.0]))).all()
 
 
