@@ -26,8 +26,8 @@ import yaml  # noqa: E402
 import earth_job  # noqa: E402
 from bench.rig.mesh import Rig, rig  # noqa: E402
 from soak import reading  # noqa: E402
-from soak.growth import Growth, growth, table  # noqa: E402
-from soak.kills import PERIOD, Kills  # noqa: E402
+from soak.growth import WARM, Growth, growth, table  # noqa: E402
+from soak.kills import KILLED, PERIOD, Kills  # noqa: E402
 from soak.receipts import Receipts  # noqa: E402
 from soak.ticks import LATE, Ticks  # noqa: E402
 from soak.work import Failed, Work, start  # noqa: E402
@@ -37,6 +37,7 @@ from tms_host.supervisor import Supervisor  # noqa: E402
 SPEED = 2.0  # times real time: faster than that no gateway with areas believes a pose
 LOOK = 2.0  # s between two looks at the ticks and receipts
 SAMPLE = 20.0  # s between two looks at what processes hold
+LONG = WARM + 3 * len(KILLED) * PERIOD  # s; else a third of them does not see each process at every age
 SERVICES: dict[str, object] = {"db": {}, "ts": {}, "sp": {}, "host": {}}
 
 
@@ -79,7 +80,7 @@ class Watch:
         anew = [f"{name} began anew by itself, at {_clock(at)}"
                 for at, name in self.growth.restarted if not self.kills.explain_new(at, name)]  # fmt: skip
         false = [f"a false receipt of {told}" for told in self.receipts.false]
-        return [*growth(self.growth.samples), *late, *anew, *false]
+        return [*late, *anew, *false]
 
 
 def _clock(at: float) -> str:
@@ -126,15 +127,16 @@ def _soak(own: Rig, seconds: float) -> int:
         except (Failed, AssertionError) as error:
             found.append(str(error))
     found += [*work.once(), *watch.findings()]
-    if watch.growth.samples:
-        print(table(watch.growth.samples))
+    long_enough = seconds >= LONG
+    found += growth(watch.growth.samples) if long_enough else []
+    print(table(watch.growth.samples))
     for line in found:
         print(f"  {line}")
     receipts = watch.receipts
     print(
         f"{work.jobs} jobs, {len(kills.done)} kills, {work.resumed} runs resumed, {receipts.count} receipts, "
         f"{len(receipts.false)} false, {receipts.unconfirmed} unconfirmed: "
-        f"{len(found)} findings" + ("" if watch.growth.samples else " (too short to see what grows)")
+        f"{len(found)} findings" + ("" if long_enough else f" (what grows is seen after {LONG / 60:.0f} minutes)")
     )
     return 1 if found else 0
 
