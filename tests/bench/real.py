@@ -63,7 +63,7 @@ def _figures(own: Rig, ros: Ros, scheduler: int, crowds: list[subprocess.Popen[s
     dispatcher.store_records(ros, [*REAL, *CROWD])
     _enable(own, ros)
     _arm(ros)
-    calls = dispatcher.start_all(ros, own.site, RUNS)
+    calls = dispatcher.start_all(ros, own.site, RUNS, one_by_one=True)
     receipts.clear()
     with _consoles(own):
         time.sleep(SETTLE)
@@ -126,10 +126,10 @@ def _arm(ros: Ros) -> None:
 
 
 def _heard(ros: Ros) -> dict[str, StopReceipt]:
-    """The last receipt of each of the ten, as they come."""
+    """The first receipt of each of the ten, as they come; a run that ends stops its machines once more."""
     found: dict[str, StopReceipt] = {}
     for name in REAL:
-        ros.subscribe(StopReceipt, f"/{name}/rc/receipts", lambda one: found.__setitem__(one.machine, one), depth=20)
+        ros.subscribe(StopReceipt, f"/{name}/rc/receipts", lambda one: found.setdefault(one.machine, one), depth=20)
     return found
 
 

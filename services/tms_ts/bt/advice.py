@@ -21,8 +21,9 @@ def advise(nodes: list[Node]) -> None:
     synchronous_outcomes: dict[Node, AtOnce] = {}
     for node in reversed(nodes):  # children before their parents
         synchronous_outcomes[node] = node.synchronous_outcomes([synchronous_outcomes[child] for child in node.children])
-    keys = known_keys(nodes)
-    type_changes(nodes, keys)
+    written = [(node, node.written()) for node in nodes]
+    keys = known_keys(nodes, written)
+    type_changes(written, keys)
     for node in nodes:
         for fault in node.faults():
             node.context.faults.append((node.line, node.path, within(node.template, fault)))
@@ -32,26 +33,26 @@ def advise(nodes: list[Node]) -> None:
             node.warn(MayHang(node.registration_name))
 
 
-def type_changes(nodes: list[Node], keys: Keys) -> None:
+def type_changes(written: list[tuple[Node, list[tuple[str, Any]]]], keys: Keys) -> None:
     """Warn of keys that nodes write with different types; a text that comes first leaves the type open."""
-    for node in nodes:
-        for key, kind in node.written():
+    for node, found in written:
+        for key, kind in found:
             known, line = keys.kinds.get(node.blackboard.place(key), (kind, node.line))
             if known is not str and kind not in (known, Any):
                 node.warn(KeyOfTwoTypes(key, CPP_NAMES[known], line, CPP_NAMES[kind]))
 
 
-def known_keys(nodes: list[Node]) -> Keys:
+def known_keys(nodes: list[Node], written: list[tuple[Node, list[tuple[str, Any]]]]) -> Keys:
     """What the nodes write, in document order."""
     texts: dict[str, str] = {}
     writers: dict[Place, Node] = {}
     kinds: dict[Place, tuple[Any, int]] = {}
-    for node in nodes:
+    for node, found in written:
         if isinstance(node, SetBlackboard):
             key, value = node.literal("output_key"), node.literal("value")
             if key is not None and value is not None:
                 texts[key] = value
-        for key, kind in node.written():
+        for key, kind in found:
             place = node.blackboard.place(key)
             writers.setdefault(place, node)
             if kind is not Any:

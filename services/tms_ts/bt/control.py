@@ -49,7 +49,8 @@ class InOrder(Control):
         self.index = 0
 
     def tick(self) -> Status:
-        self.set_state(RUNNING)
+        if self.state is not RUNNING:
+            self.set_state(RUNNING)
         children = self.children
         while self.index < len(children):
             child = children[self.index]

@@ -73,8 +73,15 @@ class Rules:
         self.registry = registry
         self.tree_ids = frozenset(document.by_id())
         self.adopted: dict[str, type[Node] | None] = {}
+        self._uses: dict[etree._Element, Use] = {}
 
     def use(self, element: etree._Element, tree: TreeElement) -> Use:
+        """What an element means; found once, as it is asked for by the checks and when the nodes are made."""
+        if (found := self._uses.get(element)) is None:
+            found = self._uses[element] = self._use(element, tree)
+        return found
+
+    def _use(self, element: etree._Element, tree: TreeElement) -> Use:
         attributes = tree.source.attributes(element)
         tag = str(element.tag)
         name = tag

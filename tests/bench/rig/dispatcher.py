@@ -22,6 +22,7 @@ from tms_machine.values import to_parameters
 from tms_ros.client import Call
 from tms_ros.node import Ros
 from tms_runtime import environment
+from tms_runtime.priority import URGENT, undisturbed
 from tms_schedulers.names import Scheduler, schedulers
 
 RECORDS = {  # deg of each joint; machines go from one to the other
@@ -56,8 +57,8 @@ def store_records(ros: Ros, names: list[str]) -> None:
     assert all(stored(name, record) for name in names for record in RECORDS)
 
 
-def start(ros: Ros, scheduler: Scheduler, runs: int) -> list[Call]:
-    """The machines of a scheduler dealt out to runs of it."""
+def start(ros: Ros, scheduler: Scheduler, runs: int, one_by_one: bool = False) -> list[Call]:
+    """The machines of a scheduler dealt out to runs of it, all at once or each when the one before goes."""
     names = sorted(scheduler.machines)
     hands = [names[number::runs] for number in range(min(runs, len(names)))]
     peer = ros.peer(ExecuteTask, scheduler.named("execute_task"))
@@ -67,15 +68,16 @@ def start(ros: Ros, scheduler: Scheduler, runs: int) -> list[Call]:
         added = ros.call(AddTask, "/tms/db/add_task", AddTask.Request(task_sequence=_tree(hand)), LIMIT)
         assert not added.error_code, added.error_msg
         call = peer.send(ExecuteTask.Goal(task_id=added.task_id, ignore_warnings=True))
-        until(lambda call=call: _goes(call), "the run goes")  # type: ignore[misc]
+        if one_by_one:
+            until(lambda call=call: _goes(call), "the run goes")  # type: ignore[misc]
         calls.append(call)
     return calls
 
 
-def start_all(ros: Ros, site: Site, runs: int) -> list[Call]:
+def start_all(ros: Ros, site: Site, runs: int, one_by_one: bool = False) -> list[Call]:
     """`runs` at all schedulers together."""
     every = schedulers(site)
-    calls = [call for scheduler in every for call in start(ros, scheduler, runs // len(every))]
+    calls = [call for scheduler in every for call in start(ros, scheduler, runs // len(every), one_by_one)]
     until(lambda: all(_goes(call) for call in calls), "every run goes")
     return calls
 
@@ -86,8 +88,9 @@ def press(ros: Ros, crowds: int) -> int:
     until(lambda: button.get_subscription_count() > crowds, "every machine is known to the button")
     button.publish(Bool())
     assert ros.delivered(button, LIMIT), "not every machine knows the button"
-    begun = time.time_ns()
-    button.publish(Bool(data=True))
+    with undisturbed(URGENT):  # as the console and `tms stop` send it
+        begun = time.time_ns()
+        button.publish(Bool(data=True))
     return begun
 
 
