@@ -33,6 +33,7 @@ REAL = [f"r{number}" for number in range(10)]
 CROWD = [f"m{number}" for number in range(20)]
 ALWAYS = ("tms:store", "tms:db", "tms:ts", "tms:ground", "tms:ur")
 GATEWAYS = [f"{name}:rc" for name in REAL]
+AT_ONCE = 5  # runs; each takes 3 s to look for subtasks to start, as no host agent is there
 DRIVEN_TOGETHER = 5  # machines in one process of rig/driven.py
 BOX = [(-50, -50), (250, -50), (250, 50), (-50, 50), (-50, -50)]  # m
 
@@ -63,7 +64,7 @@ def _figures(own: Rig, ros: Ros, scheduler: int, crowds: list[subprocess.Popen[s
     dispatcher.store_records(ros, [*REAL, *CROWD])
     _enable(own, ros)
     _arm(ros)
-    calls = dispatcher.start_all(ros, own.site, RUNS, one_by_one=True)
+    calls = dispatcher.start_all(ros, own.site, RUNS, AT_ONCE)
     receipts.clear()
     with _consoles(own):
         time.sleep(SETTLE)

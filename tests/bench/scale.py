@@ -38,6 +38,7 @@ A_PROCESS = 10  # machines in one process of the crowd
 SETTLE, WATCH = 2.0, 12.0  # s
 SLOW = 0.25  # s; p99 of the hand-overs is below it if at most 1 % are above it
 CROWD, DRIVEN, FORKS = (Path(__file__).parent / "rig" / name for name in ("crowd.py", "driven.py", "forks.py"))
+FOUND = 4.0  # s until a node has found all others
 GONE = 6.0  # s after which discovery has dropped a process that was killed
 
 
@@ -119,7 +120,7 @@ def _bare(own: Rig, ends: dict[str, list[tuple[str, str]]]) -> float:
     file = Path(own.mesh.state) / "ends.json"
     file.write_text(json.dumps(ends), encoding="utf-8")
     with own.beside("same", str(file)) as (pid, _):
-        time.sleep(SETTLE + WATCH)
+        time.sleep(FOUND)
         return pss(pid)
 
 

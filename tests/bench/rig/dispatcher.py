@@ -57,8 +57,8 @@ def store_records(ros: Ros, names: list[str]) -> None:
     assert all(stored(name, record) for name in names for record in RECORDS)
 
 
-def start(ros: Ros, scheduler: Scheduler, runs: int, one_by_one: bool = False) -> list[Call]:
-    """The machines of a scheduler dealt out to runs of it, all at once or each when the one before goes."""
+def start(ros: Ros, scheduler: Scheduler, runs: int, at_once: int = 100) -> list[Call]:
+    """The machines of a scheduler dealt out to runs of it; so many begin at once, the next when these go."""
     names = sorted(scheduler.machines)
     hands = [names[number::runs] for number in range(min(runs, len(names)))]
     peer = ros.peer(ExecuteTask, scheduler.named("execute_task"))
@@ -68,16 +68,16 @@ def start(ros: Ros, scheduler: Scheduler, runs: int, one_by_one: bool = False) -
         added = ros.call(AddTask, "/tms/db/add_task", AddTask.Request(task_sequence=_tree(hand)), LIMIT)
         assert not added.error_code, added.error_msg
         call = peer.send(ExecuteTask.Goal(task_id=added.task_id, ignore_warnings=True))
-        if one_by_one:
-            until(lambda call=call: _goes(call), "the run goes")  # type: ignore[misc]
         calls.append(call)
+        if len(calls) % at_once == 0:
+            until(lambda: all(_goes(call) for call in calls[-at_once:]), "the runs go")
     return calls
 
 
-def start_all(ros: Ros, site: Site, runs: int, one_by_one: bool = False) -> list[Call]:
+def start_all(ros: Ros, site: Site, runs: int, at_once: int = 100) -> list[Call]:
     """`runs` at all schedulers together."""
     every = schedulers(site)
-    calls = [call for scheduler in every for call in start(ros, scheduler, runs // len(every), one_by_one)]
+    calls = [call for scheduler in every for call in start(ros, scheduler, runs // len(every), at_once)]
     until(lambda: all(_goes(call) for call in calls), "every run goes")
     return calls
 
