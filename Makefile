@@ -226,7 +226,7 @@ pictures: setup ## state machines in ARCHITECTURE.md; each page of the running d
 	@sh deploy/system-packages.sh chromium japanese
 	@$(if $(SITE),TMS_SITE="$(SITE)") $(PY) tests/pictures.py
 
-soak: setup ## the two-machine demo over and over; nothing may grow (MINUTES=120)
+soak: setup ## two trucks and an excavator move earth while processes are killed; nothing may grow, or be told wrongly (MINUTES=120)
 	@$(PY) tests/soak $(if $(MINUTES),--minutes "$(MINUTES)")
 
 containers: ## the system packages of test-docker: a Docker engine, Compose and more

@@ -14,6 +14,7 @@ GROUND = {"area": [-30.0, -30.0, 10.0, 20.0]}  # m
 RECORDS = ("zx200", "shared", "earthwork")
 TASK = "load_trucks_until_full"
 WIDE = ("area_x=[-22.5, -12.5, -12.5, -22.5]", "area_y=[-18.0, -18.0, -2.0, -2.0]")  # the sample's has about 35 m3
+ACTIVE = ("preparing", "running", "stopping", "held")  # states of a run that is not over
 BUCKET = 0.75  # m3 as it lay, at most: 0.95 loose
 LOST = 2  # sums of the last seconds before tms:db was killed: it keeps the past of records in memory for so long
 
@@ -39,6 +40,14 @@ def job(mesh: Mesh) -> dict[str, float]:
     wait_until(read, 60, "the database answers", every=CLI)
     values: dict[str, float] = json.loads(found[0])["values"]
     return values
+
+
+def state_of(mesh: Mesh, run: str) -> str:
+    """The state of a run; empty while it is not known: a full PC may keep the database from being found in time."""
+    told = mesh.tms("runs", "--limit", "5", "--json", expect=None)
+    if told.returncode:
+        return ""
+    return next((row["state"] for row in json.loads(told.stdout) if row["run_id"] == run), "")
 
 
 def check(mesh: Mesh, volume: float, *, killed: int = 0) -> None:

@@ -15,6 +15,7 @@ from std_msgs.msg import String
 from tms_msg_rc.msg import MachineState, StopReceipt
 from tms_msg_rc.srv import Rearm
 
+import area_file
 from conftest import GATEWAYS_ONLY, Mesh, mesh_apart, rearm, wait_until
 from tms_machine import stamps
 from tms_ros.goals import Outcome
@@ -115,18 +116,6 @@ class Site:
         return code in answer.error_msg and not answer.armed
 
 
-def document() -> str:
-    features = [
-        {
-            "type": "Feature",
-            "properties": {"id": name, "type": kind},
-            "geometry": {"type": "Polygon", "coordinates": [[*corners, corners[0]]]},
-        }
-        for name, (kind, corners) in AREAS.items()
-    ]
-    return json.dumps({"type": "FeatureCollection", "frame": "map", "features": features})
-
-
 @contextmanager
 def people_site(folder: Path, *services: str) -> Iterator[Site]:
     """The site, up, with its areas enabled."""
@@ -138,16 +127,14 @@ def people_site(folder: Path, *services: str) -> Iterator[Site]:
         "sim": {"speed": 1.0, "trackers": {"eye": OUTSIDE, "gate": {}}},
     }
     with mesh_apart(folder, **changes) as mesh:
-        areas = mesh.site.with_suffix("") / "areas"
-        areas.mkdir(parents=True)
-        (areas / "yard.geojson").write_text(document())
+        area_file.write(mesh, AREAS)
         (mesh.site.parent / "sensing.yaml").write_text(yaml.safe_dump({"trackers": TRACKERS}))
         mesh.tms("up", "--no-wait")  # without areas it is not ready
         try:
             ros = Ros("tms_tests_people")
             made = Site(mesh, ros)
             made.until("AREAS_NOT_ENABLED")
-            mesh.tms("areas", "enable", "--yes", "--by", "a person")
+            mesh.tms(*area_file.ENABLE)
             yield made
             ros.close()
         finally:

@@ -16,7 +16,7 @@ import threading
 import time
 import urllib.request
 from collections.abc import Iterable, Iterator
-from contextlib import ExitStack
+from contextlib import ExitStack, contextmanager
 from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -149,15 +149,9 @@ def _consoles(mesh: Mesh, port: int) -> Figure:
     rows = rows if isinstance(rows, list) else rows["processes"]
     server = psutil.Process(next(row["pid"] for row in rows if row["name"] == "tms:ur"))
     floor = _load(server)
-    leave = threading.Event()
-    threads = [threading.Thread(target=look, args=(port, leave), daemon=True) for _ in range(CONSOLES)]
-    for thread in threads:
-        thread.start()
-    time.sleep(2)
-    busy = _load(server)
-    leave.set()
-    for thread in threads:
-        thread.join(10)
+    with consoles(port):
+        time.sleep(2)
+        busy = _load(server)
     return Figure(f"{CONSOLES} consoles", "%", busy - floor, 10.0, floor)
 
 
@@ -187,7 +181,22 @@ def _load(process: psutil.Process) -> float:
     return (sum(process.cpu_times()[:2]) - before) / (time.monotonic() - begun) * 100
 
 
-def look(port: int, leave: threading.Event) -> None:
+@contextmanager
+def consoles(port: int) -> Iterator[None]:
+    """CONSOLES that hear everything."""
+    leave = threading.Event()
+    threads = [threading.Thread(target=_look, args=(port, leave), daemon=True) for _ in range(CONSOLES)]
+    for thread in threads:
+        thread.start()
+    try:
+        yield
+    finally:
+        leave.set()
+        for thread in threads:
+            thread.join(10)
+
+
+def _look(port: int, leave: threading.Event) -> None:
     with socket.create_connection(("127.0.0.1", port), 10) as console:
         console.sendall(f"GET /api/events HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\n\r\n".encode())
         while not leave.is_set():

@@ -18,6 +18,7 @@ from pathlib import Path
 
 import psutil
 
+from bench.rig.costs import pss
 from bench.rig.mesh import LIMIT, Rig, rig
 from bench.runner import Figure
 from conftest import ports_of
@@ -42,7 +43,7 @@ def measure() -> Iterable[Figure]:
         yield from _figures("simple", _cost(own, 1), _cost(own, COUNT), late_limit=1000.0)
         with _server(own) as pid:
             alone, many = _cost(own, 1), _cost(own, COUNT)
-            memory = psutil.Process(pid).memory_full_info().pss / 1e6
+            memory = pss(pid)
         yield from _figures("server", alone, many, late_limit=3000.0, note=f"the server itself has {memory:.0f} MB")
 
 

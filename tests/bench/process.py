@@ -14,8 +14,7 @@ import time
 import urllib.request
 from collections.abc import Iterable, Sequence
 
-import psutil
-
+from bench.rig.costs import pss
 from bench.rig.mesh import Rig, at, rig, until
 from bench.runner import Figure
 from tms_config.processes import Process, table
@@ -91,7 +90,7 @@ def _costs(own: Rig, rows: list[Process], bare: int, hearing: int) -> Iterable[F
     time.sleep(SETTLE)
     idle = _idle([*wanted, bare, hearing], rows)
     floor, received = max(idle.pop(bare), 0.01), idle.pop(hearing)
-    memory, bare_memory = {pid: _pss(pid) for pid in wanted}, _pss(bare)
+    memory, bare_memory = {pid: pss(pid) for pid in wanted}, pss(bare)
     largest, hungriest = (max(found, key=lambda pid: found[pid]) for found in (memory, idle))
     count, total, weight = len(wanted), sum(idle.values()), sum(memory.values())
     yield Figure("memory (PSS), largest process", "MB", memory[largest], 60.0, bare_memory, note=wanted[largest].full)
@@ -129,8 +128,3 @@ def _idle(pids: Sequence[int], rows: list[Process]) -> dict[int, float]:
 def _clock_of(pid: int) -> int:
     """The clock of a process's processor time (clock_getcpuclockid(3)); /proc tells it in steps of 10 ms only."""
     return (~pid << 3) | 2  # CPUCLOCK_SCHED
-
-
-def _pss(pid: int) -> float:
-    """MB of a process; what it shares counts for its part."""
-    return float(psutil.Process(pid).memory_full_info().pss) / 1e6

@@ -7,25 +7,26 @@ their subtasks are in rig/driven.py. The others are at the level of messages (ri
 
 from __future__ import annotations
 
-import json
 import os
 import subprocess
-import threading
 import time
 from collections.abc import Iterable, Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack
 
 from tms_msg_rc.msg import StopReceipt
-from tms_msg_rc.srv import Rearm
 
-from bench.console import CONSOLES, look
+import area_file
+from bench.console import consoles
 from bench.rig import dispatcher
-from bench.rig.dispatcher import END_LIMIT, LIMIT, SUBTASKS, until
+from bench.rig.dispatcher import END_LIMIT, until
 from bench.rig.mesh import Rig, rig
 from bench.runner import Figure
-from bench.scale import A_PROCESS, DRIVEN, RUNS, SETTLE, SLOW, after_press, crowd_of, processes, watched
+from bench.scale import DRIVEN, RUNS, SETTLE, SLOW, after_press, machines_of, processes, watched
+from bench.yard.machines import ARMED, why_not_armed
+from tms_cli import area_sets
 from tms_cli.drill.record import time_of
 from tms_config.processes import find
+from tms_reason.errors import TmsError
 from tms_ros.node import Ros
 from tms_ur import gateway_areas
 
@@ -33,9 +34,9 @@ REAL = [f"r{number}" for number in range(10)]
 CROWD = [f"m{number}" for number in range(20)]
 ALWAYS = ("tms:store", "tms:db", "tms:ts", "tms:ground", "tms:ur")
 GATEWAYS = [f"{name}:rc" for name in REAL]
-AT_ONCE = 5  # runs; each takes 3 s to look for subtasks to start, as no host agent is there
+AT_ONCE = 2  # runs; each takes 3 s to look for subtasks to start, as no host agent is there
 DRIVEN_TOGETHER = 5  # machines in one process of rig/driven.py
-BOX = [(-50, -50), (250, -50), (250, 50), (-50, 50), (-50, -50)]  # m
+AREAS = {"yard": ("unmanned", [(-50, -50), (250, -50), (250, 50), (-50, 50)])}
 
 
 def measure() -> Iterable[Figure]:
@@ -43,19 +44,10 @@ def measure() -> Iterable[Figure]:
     services: dict[str, object] = {"db": {}, "ts": {}, "ur": {}}
     ground = {"area": [-20.0, -20.0, 200.0, 20.0]}
     with rig(machines=machines, services=services, ground=ground) as own, ExitStack() as stack:
-        _write_area(own)
+        area_file.write(own.mesh, AREAS)
         scheduler = stack.enter_context(processes(own, dict(os.environ), *ALWAYS, *GATEWAYS))[ALWAYS.index("tms:ts")]
-        crowds = [
-            stack.enter_context(crowd_of(own, CROWD[i], ",".join(SUBTASKS), *CROWD[i : i + A_PROCESS]))
-            for i in range(0, len(CROWD), A_PROCESS)
-        ]
-        driven = [
-            stack.enter_context(crowd_of(own, REAL[i], ",".join(SUBTASKS), *REAL[i : i + DRIVEN_TOGETHER], kind=DRIVEN))
-            for i in range(0, len(REAL), DRIVEN_TOGETHER)
-        ]
-        for one in (*crowds, *driven):
-            assert one.stdout is not None
-            assert one.stdout.readline() == "ready\n"
+        crowds = stack.enter_context(machines_of(own, CROWD))
+        stack.enter_context(machines_of(own, REAL, DRIVEN, DRIVEN_TOGETHER))
         yield from _figures(own, stack.enter_context(own.node()), scheduler, crowds)
 
 
@@ -63,10 +55,11 @@ def _figures(own: Rig, ros: Ros, scheduler: int, crowds: list[subprocess.Popen[s
     receipts = _heard(ros)
     dispatcher.store_records(ros, [*REAL, *CROWD])
     _enable(own, ros)
-    _arm(ros)
+    for name in REAL:
+        until(lambda name=name: why_not_armed(ros, name) in ARMED, f"{name} is armed")  # type: ignore[misc]
     calls = dispatcher.start_all(ros, own.site, RUNS, AT_ONCE)
     receipts.clear()
-    with _consoles(own):
+    with consoles(own.site.file.ports.console):
         time.sleep(SETTLE)
         ((late, handed_over, slow, cpu),) = watched({find(own.site, "tms:ts"): scheduler})
         pressed = dispatcher.press(ros, len(crowds) + len(REAL))
@@ -83,23 +76,9 @@ def _figures(own: Rig, ros: Ros, scheduler: int, crowds: list[subprocess.Popen[s
     yield Figure("of ten, not proven to stand", "", float(wrong), 0.5)
 
 
-def _write_area(own: Rig) -> None:
-    folder = own.mesh.site.with_suffix("") / "areas"
-    folder.mkdir(parents=True)
-    shape = {"type": "Polygon", "coordinates": [BOX]}
-    feature = {"type": "Feature", "properties": {"id": "yard", "type": "unmanned"}, "geometry": shape}
-    (folder / "yard.geojson").write_text(
-        json.dumps({"type": "FeatureCollection", "frame": "map", "features": [feature]})
-    )
-
-
 def _enable(own: Rig, ros: Ros) -> None:
     """The areas of the ten; the others' gateways are none."""
-    from tms_areas.geojson import gathered, read
-    from tms_reason.errors import TmsError
-
-    text = (own.mesh.site.with_suffix("") / "areas/yard.geojson").read_text(encoding="utf-8")
-    areas = gathered([read(text, "yard.geojson", None)])
+    areas = area_sets.configured(own.site)
 
     def enabled() -> bool:
         try:
@@ -111,37 +90,9 @@ def _enable(own: Rig, ros: Ros) -> None:
     until(enabled, "the ten keep the areas")
 
 
-def _arm(ros: Ros) -> None:
-    from tms_reason.errors import RosError
-
-    def armed(name: str) -> bool:
-        try:
-            first = ros.call(Rearm, f"/{name}/rearm", Rearm.Request(), LIMIT)
-            done = ros.call(Rearm, f"/{name}/rearm", Rearm.Request(token=first.token), LIMIT) if first.token else first
-        except RosError:  # a service drops its answer to a client that it has not found yet
-            return False
-        return done.error_code in ("", "NOT_STOPPED")
-
-    for name in REAL:
-        until(lambda name=name: armed(name), f"{name} is armed")  # type: ignore[misc]
-
-
 def _heard(ros: Ros) -> dict[str, StopReceipt]:
     """The first receipt of each of the ten, as they come; a run that ends stops its machines once more."""
     found: dict[str, StopReceipt] = {}
     for name in REAL:
         ros.subscribe(StopReceipt, f"/{name}/rc/receipts", lambda one: found.setdefault(one.machine, one), depth=20)
     return found
-
-
-@contextmanager
-def _consoles(own: Rig) -> Iterator[None]:
-    """Twenty, that hear everything."""
-    leave, port = threading.Event(), own.site.file.ports.console
-    threads = [threading.Thread(target=look, args=(port, leave), daemon=True) for _ in range(CONSOLES)]
-    for thread in threads:
-        thread.start()
-    yield
-    leave.set()
-    for thread in threads:
-        thread.join(LIMIT)

@@ -8,12 +8,10 @@ from __future__ import annotations
 
 import json
 import time
-import urllib.request
 from collections.abc import Iterable
 from pathlib import Path
 
-from prometheus_client.parser import text_string_to_metric_families
-
+from bench.rig.costs import counted
 from bench.rig.mesh import Rig, rig, until
 from bench.runner import Figure
 from tms_config.processes import find
@@ -65,8 +63,5 @@ def _ticks(own: Rig, runs: int) -> tuple[float, float]:
 
 
 def _counted(own: Rig) -> tuple[float, float]:
-    row = find(own.site, "tms:ts")
-    with urllib.request.urlopen(f"http://{row.address}:{row.port}/metrics", timeout=5) as answer:
-        families = text_string_to_metric_families(answer.read().decode())
-        samples = {sample.name: sample.value for family in families for sample in family.samples}
-    return samples["tms_ts_tick_seconds_count"], samples["tms_ts_tick_overruns_total"]
+    found = counted(find(own.site, "tms:ts"))
+    return found["tms_ts_tick_seconds_count"], found["tms_ts_tick_overruns_total"]

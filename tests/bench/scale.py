@@ -14,17 +14,16 @@ import os
 import subprocess
 import sys
 import time
-import urllib.request
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import AbstractContextManager, ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
 import psutil
-from prometheus_client.parser import text_string_to_metric_families
 from rclpy.node import Node
 
 from bench.rig import dispatcher
+from bench.rig.costs import counted, pss
 from bench.rig.dispatcher import END_LIMIT, LIMIT, SUBTASKS
 from bench.rig.mesh import Rig, rig
 from bench.runner import Figure
@@ -81,13 +80,7 @@ def _cost(size: int, count: int) -> Cost:
         if count > 1:
             second = f"tms:ts_{SECOND}"
             pids[second] = stack.enter_context(processes(own, own.mesh.environment_of(SECOND), second))[-1]
-        crowds = [
-            beside.enter_context(crowd_of(own, names[i], ",".join(SUBTASKS), *names[i : i + A_PROCESS]))
-            for i in range(0, size, A_PROCESS)
-        ]
-        for crowd in crowds:
-            assert crowd.stdout is not None
-            assert crowd.stdout.readline() == "ready\n"
+        crowds = beside.enter_context(machines_of(own, names))
         ros = stack.enter_context(own.node())
         dispatcher.store_records(ros, names)
         calls = dispatcher.start_all(ros, own.site, RUNS)
@@ -124,11 +117,6 @@ def _bare(own: Rig, ends: dict[str, list[tuple[str, str]]]) -> float:
         return pss(pid)
 
 
-def pss(pid: int) -> float:
-    """MB of a process; what it shares counts for its part."""
-    return float(psutil.Process(pid).memory_full_info().pss) / 1e6
-
-
 def _site(shares: list[list[str]]) -> AbstractContextManager[Rig]:
     """A site whose schedulers have these machines."""
     machines = {name: {"model": "zx200"} for share in shares for name in share}
@@ -155,12 +143,22 @@ def processes(own: Rig, env: dict[str, str], *names: str) -> Iterator[list[int]]
 
 
 @contextmanager
-def crowd_of(own: Rig, *words: str, kind: Path = CROWD) -> Iterator[subprocess.Popen[str]]:
-    with _program(own, dict(os.environ), kind, *words) as crowd:
-        try:
-            yield crowd
-        finally:
-            crowd.kill()
+def machines_of(
+    own: Rig, names: list[str], kind: Path = CROWD, together: int = A_PROCESS
+) -> Iterator[list[subprocess.Popen[str]]]:
+    """Machines at the level of messages, or DRIVEN ones, so many in a process; these are ready."""
+    with ExitStack() as stack:
+        parts = [names[i : i + together] for i in range(0, len(names), together)]
+        running = [
+            stack.enter_context(_program(own, dict(os.environ), kind, part[0], ",".join(SUBTASKS), *part))
+            for part in parts
+        ]
+        for one in running:
+            stack.callback(one.kill)
+        for one in running:
+            assert one.stdout is not None
+            assert one.stdout.readline() == "ready\n"
+        yield running
 
 
 @contextmanager
@@ -187,9 +185,9 @@ def watched(rows: Mapping[Process, int]) -> list[tuple[float, float, float, floa
     def used() -> dict[Process, float]:
         return {row: sum(psutil.Process(pid).cpu_times()[:2]) for row, pid in rows.items()}
 
-    before, cpu, begun = {row: _counted(row) for row in rows}, used(), time.perf_counter()
+    before, cpu, begun = {row: counted(row) for row in rows}, used(), time.perf_counter()
     time.sleep(WATCH)
-    after, ended, passed = {row: _counted(row) for row in rows}, used(), time.perf_counter() - begun
+    after, ended, passed = {row: counted(row) for row in rows}, used(), time.perf_counter() - begun
     return [(*_ticks_and_hand_overs(before[row], after[row]), 100 * (ended[row] - cpu[row]) / passed) for row in rows]
 
 
@@ -201,16 +199,6 @@ def _ticks_and_hand_overs(before: dict[str, float], after: dict[str, float]) -> 
     hand_overs = max(1, grown("handover_seconds_count"))
     handed_over = 1000 * grown("handover_seconds_sum") / hand_overs
     return late, handed_over, 100 * (1 - grown(f"handover_seconds_bucket_{SLOW}") / hand_overs)
-
-
-def _counted(row: Process) -> dict[str, float]:
-    with urllib.request.urlopen(f"http://{row.address}:{row.port}/metrics", timeout=5) as answer:
-        families = text_string_to_metric_families(answer.read().decode())
-        return {
-            "_".join((sample.name, *sample.labels.values())): sample.value
-            for family in families
-            for sample in family.samples
-        }
 
 
 def after_press(begun: int, crowds: Iterable[subprocess.Popen[str]]) -> tuple[float, float]:

@@ -10,6 +10,7 @@ import psutil
 import pytest
 from fleet import Fleet, press
 
+from bench.rig.costs import pss
 from bench.scale import RUNS, SETTLE, watched
 
 pytestmark = [pytest.mark.docker, pytest.mark.timeout(600)]
@@ -25,7 +26,7 @@ def test_every_run_goes_and_every_machine_is_stopped(fleet: Fleet, capsys: pytes
         rows = fleet.schedulers
         found = dict(zip(rows, watched(rows), strict=True))
         busy = psutil.cpu_percent()
-        memory = {row: psutil.Process(pid).memory_full_info().pss / 1e6 for row, pid in rows.items()}
+        memory = {row: pss(pid) for row, pid in rows.items()}
         heard, ended, left = press(dispatcher, crowds)
     with capsys.disabled():
         print(f"\n{machines} machines on 4 PCs, {RUNS} runs; processors of this PC {busy:.0f} % busy")

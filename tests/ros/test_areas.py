@@ -17,6 +17,7 @@ from nav2_msgs.action import NavigateToPose
 from sensor_msgs.msg import JointState
 from tms_msg_rc.msg import MachineState, StopReceipt
 
+import area_file
 from areas.truth import Rules, edge
 from conftest import CLI, GATEWAYS_ONLY, Mesh, mesh_apart, rearm, wait_until
 from tms_config.config import load_site
@@ -76,16 +77,12 @@ class Rig:
         """Let areas count, whose corners are told from where the machine stands, and arm it; returns that place."""
         self.rules = None
         here = self.place
-        features = []
-        for name, (kind, corners) in areas.items():
-            ring = [self.seen_from(here, *corner) for corner in (*corners, corners[0])]
-            shape = {"type": "Polygon", "coordinates": [ring]}
-            features.append({"type": "Feature", "properties": {"id": name, "type": kind}, "geometry": shape})
-        folder = self.mesh.site.with_suffix("") / "areas"
-        folder.mkdir(parents=True, exist_ok=True)
-        document = {"type": "FeatureCollection", "frame": "map", "features": features}
-        (folder / "yard.geojson").write_text(json.dumps(document))
-        self.mesh.tms("areas", "enable", "--yes", "--by", "a person")
+        there = {
+            name: (kind, [self.seen_from(here, *corner) for corner in corners])
+            for name, (kind, corners) in areas.items()
+        }
+        area_file.write(self.mesh, there)
+        self.mesh.tms(*area_file.ENABLE)
         wait_until(self.ready, 40, lambda: f"its place is believed: {self.state.reason}")
         wait_until(lambda: rearm(self.ros, MACHINE), 20, "it is armed", every=CLI)
         wait_until(lambda: self.state.armed, 20, "it says so")

@@ -15,6 +15,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -49,15 +50,17 @@ class Watch:
         self.kills, self.receipts = kills, receipts
         self.growth, self.ticks = Growth(supervisor), Ticks(find(own.site, "tms:ts"))
         self._leave = threading.Event()
-        self._thread = threading.Thread(target=self._watch)
+        self._pool = ThreadPoolExecutor(1)
 
     def __enter__(self) -> Watch:
-        self._thread.start()
+        self._watching = self._pool.submit(self._watch)
         return self
 
     def __exit__(self, *_: object) -> None:
         self._leave.set()
-        self._thread.join()
+        self._pool.shutdown()
+        self._watching.result()  # nothing counts as seen if it broke off
+        self.receipts.judge(0.0)
 
     def _watch(self) -> None:
         duties: list[tuple[float, Callable[[], object]]] = [

@@ -26,9 +26,9 @@ class Receipts:
         self.false: list[str] = []
         self.count = self.unconfirmed = 0
 
-    def judge(self) -> None:
-        """What came so long ago that what follows is known; often enough that nothing is forgotten."""
-        until = time.time() - WAIT
+    def judge(self, wait: float = WAIT) -> None:
+        """What came so long ago [s] that what follows is known; often enough that nothing is forgotten."""
+        until = time.time() - wait
         for name, observer in self._observers.items():
             every = observer.since(self._judged[name]).receipts
             for receipt in [one for one in every if self._judged[name] < one.came <= until]:

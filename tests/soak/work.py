@@ -6,15 +6,15 @@ import json
 import time
 from collections.abc import Callable
 
+import area_file
 import earth_job
-from conftest import CLI, Mesh, wait_until
+from conftest import Mesh
 
 VOLUME = 6.0  # m3 of a job, as it lay: more than one truck takes
 JOBS = 5  # on a ground
 JOB_LIMIT = 900.0  # s
 LOOK = 3.0  # s between two looks at a run
-ACTIVE = ("preparing", "running", "stopping", "held")
-YARD = [(-60, -60), (60, -60), (60, 60), (-60, 60), (-60, -60)]  # m
+AREAS = {"yard": ("unmanned", [(-60, -60), (60, -60), (60, 60), (-60, 60)])}  # all machines may be anywhere in it
 
 
 class Failed(Exception):
@@ -53,21 +53,14 @@ class Work:
         deadline = time.monotonic() + JOB_LIMIT
         while time.monotonic() < deadline:
             time.sleep(LOOK)
-            state = self._state(run)
+            state = earth_job.state_of(self._mesh, run)
             if state == "interrupted":
                 self._mesh.arm()
                 self._mesh.tms("resume", run, "--yes")
                 self.resumed += 1
-            elif state and state not in ACTIVE:
+            elif state and state not in earth_job.ACTIVE:
                 return state
         return f"not after {JOB_LIMIT:.0f} s"
-
-    def _state(self, run: str) -> str:
-        """Empty while the database does not answer."""
-        told = self._mesh.tms("runs", "--limit", "5", "--json", expect=None)
-        if told.returncode:
-            return ""
-        return next((row["state"] for row in json.loads(told.stdout) if row["run_id"] == run), "")
 
     def _renew_ground(self) -> None:
         """Let the ground begin anew, level; the work goes on."""
@@ -84,24 +77,7 @@ class Work:
         return [] if states == ["success"] * self.jobs else [f"{self.jobs} jobs, but runs ended as {states}"]
 
 
-def _write_area(mesh: Mesh) -> None:
-    """One in which all machines may be."""
-    folder = mesh.site.with_suffix("") / "areas"
-    folder.mkdir(parents=True)
-    feature = {
-        "type": "Feature", "properties": {"id": "yard", "type": "unmanned"},
-        "geometry": {"type": "Polygon", "coordinates": [YARD]},
-    }  # fmt: skip
-    (folder / "yard.geojson").write_text(
-        json.dumps({"type": "FeatureCollection", "frame": "map", "features": [feature]})
-    )
-
-
 def start(mesh: Mesh) -> None:
-    """The site, with its areas enabled and its machines armed."""
-    _write_area(mesh)
-    mesh.tms("up", "--no-wait")  # without areas it is not ready
-    enable = ("areas", "enable", "--yes", "--by", "a person")
-    wait_until(lambda: mesh.tms(*enable, expect=None).returncode == 0, 90, "all gateways serve", every=CLI)
-    mesh.arm()
+    """The site, with its areas enabled, its machines armed, and the records of the job."""
+    area_file.up(mesh, AREAS)
     earth_job.prepare(mesh, wide=True)

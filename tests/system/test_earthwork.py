@@ -9,11 +9,10 @@ from pathlib import Path
 import pytest
 import yaml
 from test_mesh import processes
-from test_stop import state_of
 
 import earth_job
 from conftest import CLI, NO_CONSOLE, Mesh, ports_of, running, site_data, wait_until
-from earth_job import check, job
+from earth_job import ACTIVE, check, job, state_of
 
 pytestmark = [pytest.mark.turns, pytest.mark.system, pytest.mark.timeout(600)]
 SPEED = 10.0  # times real time
@@ -30,7 +29,6 @@ KILLED = (  # one after the other, a bucket later each
     "tms:db",
     "tms:ground",
 )
-ACTIVE = ("preparing", "running", "stopping", "held")
 
 
 @pytest.fixture
@@ -50,15 +48,6 @@ def worked(mesh: Mesh) -> dict[str, float]:
     """The sum of the excavator's cycles."""
     found: dict[str, float] = json.loads(mesh.tms("work", "--machine", "zx200", "--json").stdout)["total"]
     return found
-
-
-def ended(mesh: Mesh, run_id: str) -> bool:
-    """A full PC may keep the database from being found in time: then it is not known."""
-    told = mesh.tms("runs", "--limit", "5", "--json", expect=None)
-    return (
-        told.returncode == 0
-        and next(r["state"] for r in json.loads(told.stdout) if r["run_id"] == run_id) not in ACTIVE
-    )
 
 
 def test_two_trucks_move_the_volume_of_the_job(mesh: Mesh) -> None:
@@ -85,6 +74,6 @@ def test_it_goes_on_whatever_is_killed(mesh: Mesh) -> None:
             mesh.wait_ready()
             mesh.tms("rearm", "--all", "--yes")
             mesh.tms("resume", run_id, "--yes")
-    wait_until(lambda: ended(mesh, run_id), 3000, "the run ends", every=5.0)
+    wait_until(lambda: state_of(mesh, run_id) not in ("", *ACTIVE), 3000, "the run ends", every=5.0)
     assert state_of(mesh, run_id) == "success", mesh.tms("events", run_id).stdout[-2000:]
     check(mesh, VOLUME, killed=KILLED.count("tms:db"))

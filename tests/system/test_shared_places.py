@@ -12,7 +12,8 @@ from collections.abc import Iterator
 import pytest
 from tms_msg_areas.msg import Place, Places
 
-from conftest import CLI, NO_CONSOLE, Mesh, mesh_apart, node_in, wait_until
+import area_file
+from conftest import NO_CONSOLE, Mesh, mesh_apart, node_in, wait_until
 from tms_config.config import load_site
 from tms_machine.places import Places as Poses
 
@@ -27,18 +28,12 @@ SITE = {
     "machines": {name: {"model": "ic120", "start": [3.0, lane, 0.0]} for name, lane in LANES.items()},
     "sim": {"speed": 2.0},  # faster than that no gateway with areas believes a pose
 }
-AREAS = {"yard": ("unmanned", -80, 100, 80), "road": ("release", *ROAD, 15)}
+AREAS = {
+    "yard": ("unmanned", [(-80, -80), (100, -80), (100, 80), (-80, 80)]),
+    "road": ("release", [(ROAD[0], -15), (ROAD[1], -15), (ROAD[1], 15), (ROAD[0], 15)]),
+}
 LEAF = '<Action ID="LeafNodeIc120" model_name="{}" record_name="{}" subtask_name="st_ic120_navigate_anywhere_deg"/>'
 HELD = '<HoldPlace place="road" model_name="{0}"/>{1}<FreePlace place="road" model_name="{0}"/>'
-
-
-def document() -> str:
-    features = []
-    for name, (kind, west, east, wide) in AREAS.items():
-        corners = [(west, -wide), (east, -wide), (east, wide), (west, wide), (west, -wide)]
-        shape = {"type": "Polygon", "coordinates": [corners]}
-        features.append({"type": "Feature", "properties": {"id": name, "type": kind}, "geometry": shape})
-    return json.dumps({"type": "FeatureCollection", "frame": "map", "features": features})
 
 
 def task(machine: str, by_nodes: bool) -> str:
@@ -51,14 +46,8 @@ def task(machine: str, by_nodes: bool) -> str:
 @pytest.fixture(scope="module")
 def mesh(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Mesh]:
     with mesh_apart(tmp_path_factory.mktemp("places"), **NO_CONSOLE, **SITE) as made:
-        folder = made.site.with_suffix("") / "areas"
-        folder.mkdir(parents=True)
-        (folder / "yard.geojson").write_text(document())
-        made.tms("up", "--no-wait")  # without areas it is not ready
         try:
-            enable = ("areas", "enable", "--yes", "--by", "a person")
-            wait_until(lambda: made.tms(*enable, expect=None).returncode == 0, 90, "both gateways serve", every=CLI)
-            made.arm()
+            area_file.up(made, AREAS)
             for name, lane in LANES.items():
                 for end, (x, yaw) in ENDS.items():
                     fields = (f"x={x}", f"y={lane}", "z=0.0", f"yaw={float(yaw)}")

@@ -15,6 +15,8 @@ from tms_ts.bt.node import AtOnce, Keys, Node, Place
 from tms_ts.bt.ports import Direction, Pointer
 from tms_ts.tree_reasons import KeyOfTwoTypes, MayHang, NeverWritten, PortType, ThrowsWithoutPort
 
+Written = list[tuple[Node, list[tuple[str, Any]]]]  # each node, and the keys that it writes with their types
+
 
 def advise(nodes: list[Node]) -> None:
     """Add the warnings of all nodes to their tree; `nodes` is in pre-order."""
@@ -22,7 +24,7 @@ def advise(nodes: list[Node]) -> None:
     for node in reversed(nodes):  # children before their parents
         synchronous_outcomes[node] = node.synchronous_outcomes([synchronous_outcomes[child] for child in node.children])
     written = [(node, node.written()) for node in nodes]
-    keys = known_keys(nodes, written)
+    keys = known_keys(written)
     type_changes(written, keys)
     for node in nodes:
         for fault in node.faults():
@@ -33,7 +35,7 @@ def advise(nodes: list[Node]) -> None:
             node.warn(MayHang(node.registration_name))
 
 
-def type_changes(written: list[tuple[Node, list[tuple[str, Any]]]], keys: Keys) -> None:
+def type_changes(written: Written, keys: Keys) -> None:
     """Warn of keys that nodes write with different types; a text that comes first leaves the type open."""
     for node, found in written:
         for key, kind in found:
@@ -42,7 +44,7 @@ def type_changes(written: list[tuple[Node, list[tuple[str, Any]]]], keys: Keys) 
                 node.warn(KeyOfTwoTypes(key, CPP_NAMES[known], line, CPP_NAMES[kind]))
 
 
-def known_keys(nodes: list[Node], written: list[tuple[Node, list[tuple[str, Any]]]]) -> Keys:
+def known_keys(written: Written) -> Keys:
     """What the nodes write, in document order."""
     texts: dict[str, str] = {}
     writers: dict[Place, Node] = {}
@@ -57,7 +59,7 @@ def known_keys(nodes: list[Node], written: list[tuple[Node, list[tuple[str, Any]
             writers.setdefault(place, node)
             if kind is not Any:
                 kinds.setdefault(place, (kind, node.line))
-    complete = not any(isinstance(node.bindings.get(node.key_port), Pointer) for node in nodes)
+    complete = not any(isinstance(node.bindings.get(node.key_port), Pointer) for node, _ in written)
     return Keys(texts, writers, kinds, complete)
 
 

@@ -30,6 +30,7 @@ from tms_config.models import Border
 from tms_machine.border import motions
 from tms_machine.frames import MAP
 from tms_machine.permit import Permit
+from tms_ros.client import Call
 from tms_ros.goals import Ended, Outcome
 from tms_ros.node import Ros
 from tms_ros.server import Goal
@@ -84,16 +85,19 @@ class Machine:
         point = JointTrajectoryPoint(positions=angles, time_from_start=Duration(sec=WORK, nanosec=0))
         motion = FollowJointTrajectory.Goal(trajectory=JointTrajectory(joint_names=list(POSE), points=[point]))
         deadline = time.monotonic() + LIMIT
-        while time.monotonic() < deadline and not goal.cancelled.is_set():
-            call = self._gateway.send(motion, goal_id=derived(goal.uuid))
-            goal.on_cancel = lambda call=call: self._gateway.cancel(call)
-            call.wait_for(lambda call=call: call.outcome is not None, LIMIT)
-            if call.outcome is not Outcome.REJECTED:  # else not everybody has found everybody yet
-                break
-            time.sleep(AGAIN)
+        call = self._send(goal, motion)
+        while call.outcome is Outcome.REJECTED and time.monotonic() < deadline and not goal.cancelled.wait(AGAIN):
+            call = self._send(goal, motion)  # not everybody had found everybody yet
         if call.outcome is Outcome.SUCCEEDED:
             return Outcome.SUCCEEDED, LeafNodeBase.Result(result=True)
         return Outcome.CANCELED if goal.cancelled.is_set() else Outcome.ABORTED, LeafNodeBase.Result()
+
+    def _send(self, goal: Goal, motion: FollowJointTrajectory.Goal) -> Call:
+        """Send the motion and wait for its end."""
+        call = self._gateway.send(motion, goal_id=derived(goal.uuid))
+        goal.on_cancel = lambda: self._gateway.cancel(call)
+        call.wait_for(lambda: call.outcome is not None, LIMIT)
+        return call
 
 
 def _standing(kind: Any) -> Callable[[Goal], Ended]:

@@ -40,6 +40,7 @@ STATE_PERIOD = 0.1  # s between joint states
 LIMIT = 60.0  # s for anything to happen; only bounds a hang
 ANSWER_LIMIT = 3.0  # s for one answer
 BURN = "import os; os.setpriority(os.PRIO_PROCESS, 0, 0)\nwhile True: pass"
+ARMED = ("", "NOT_STOPPED")
 HURRY = -10  # nice value of the yard: machines and buttons have PCs of their own
 
 
@@ -80,6 +81,18 @@ def motion(model: Any) -> FollowJointTrajectory.Goal:
     angles = [(joint.min + joint.max) / 2 if joint.min is not None else 0.0 for joint in model.joints.values()]
     point = JointTrajectoryPoint(positions=array("d", angles), time_from_start=Duration(sec=60, nanosec=0))
     return FollowJointTrajectory.Goal(trajectory=JointTrajectory(joint_names=joints, points=[point]))
+
+
+def why_not_armed(ros: Ros, name: str) -> str:
+    """Try to arm a machine; the code of why it is not, one of ARMED if it is."""
+    try:
+        first = ros.call(Rearm, f"/{name}/rearm", Rearm.Request(), ANSWER_LIMIT)
+        if first.error_code:
+            return str(first.error_code)
+        armed = ros.call(Rearm, f"/{name}/rearm", Rearm.Request(token=first.token), ANSWER_LIMIT)
+    except RosError as error:  # a service drops its answer to a client that it has not found yet
+        return error.code
+    return str(armed.error_code)
 
 
 class Yard:
@@ -140,20 +153,9 @@ class Yard:
         self._button.publish(Bool(data=False))
         deadline = time.monotonic() + LIMIT
         for name in names():
-            while (code := self._arm(name)) not in ("", "NOT_STOPPED"):
+            while (code := why_not_armed(self.ros, name)) not in ARMED:
                 assert time.monotonic() < deadline, f"{name} cannot be armed: {code}"
                 time.sleep(0.05)
-
-    def _arm(self, name: str) -> str:
-        """One try; why the machine is not armed, empty if it is."""
-        try:
-            first = self.ros.call(Rearm, f"/{name}/rearm", Rearm.Request(), ANSWER_LIMIT)
-            if first.error_code:
-                return str(first.error_code)
-            armed = self.ros.call(Rearm, f"/{name}/rearm", Rearm.Request(token=first.token), ANSWER_LIMIT)
-        except RosError as error:  # a service drops its answer to a client that it has not found yet
-            return error.code
-        return str(armed.error_code)
 
     def move(self) -> None:
         """One goal a machine, of a foreign client, and all of them run."""
@@ -180,7 +182,7 @@ class Yard:
         while missing := [name for name in names() if name not in self.running]:
             assert time.monotonic() < deadline, f"not within {LIMIT:.0f} s: goals of {', '.join(missing)} run"
             for name in missing:
-                self._arm(name)
+                why_not_armed(self.ros, name)
             again()
             time.sleep(0.1)
         with self._changed:
