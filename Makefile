@@ -81,7 +81,7 @@ console-types: setup ## the API's types for the console, after a change of the A
 
 $(VENV)/.interfaces-$(NAV2_DISTRO): $(VENV)/.requirements $(LOCKS)/build.lock $(shell find services/interfaces -type f -not -name '*.pyc')
 	@rm -rf $(VENV)/interfaces
-	$(if $(BUNDLE),,@echo "building the ROS interface packages (two to three minutes)")
+	$(if $(BUNDLE),,@echo "building the ROS interface packages (one to two minutes)")
 	$(if $(BUNDLE),,$(UV) build -q -p $(PY) --wheel --build-constraints $(LOCKS)/build.lock -o $(VENV)/interfaces services/interfaces)
 	$(INSTALL) --compile-bytecode -p $(PY) --no-deps --reinstall $(or $(BUNDLE),$(VENV)/interfaces)/tms_interfaces-*.whl
 	$(PY) services/interfaces/_wheel/stubs.py
