@@ -37,13 +37,16 @@ TMS := $(VENV)/bin/tms $(if $(SITE),--site $(SITE))
 # A sourced ROS installation would mix its libraries into the venv's.
 unexport PYTHONPATH LD_LIBRARY_PATH AMENT_PREFIX_PATH CMAKE_PREFIX_PATH _ROS_WHEELS_BOOTSTRAP_COMPLETE
 .DEFAULT_GOAL := help
-.PHONY: help setup console console-types bundle interfaces locks demo test test-fast up down status logs restart lint conformance bench verify pictures soak drill simulate areas replay model traces mutants mutmut coverage nightly test-docker fleet system containers clean
+.PHONY: help setup ready console console-types bundle interfaces locks demo test test-fast up down status logs restart lint conformance bench verify pictures soak drill simulate areas replay model traces mutants mutmut coverage nightly test-docker fleet system containers clean
 
 help: ## this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 14
 
-setup: $(VENV)/.ready $(if $(BUNDLE),$(if $(wildcard wheels/secantusdb-*),$(VENV)-store/.ready),$(VENV)-store/.ready $(BUILT)) ## everything that the other targets need (they call it)
+setup: ## everything that the other targets need (they call it)
+	@$(MAKE) --no-print-directory --jobs=3 ready
 	@$(PY) -m compileall -q -x 'services/interfaces' services $(wildcard tests)  # where Python itself may not write it, each process would compile anew
+
+ready: $(VENV)/.ready $(if $(BUNDLE),$(if $(wildcard wheels/secantusdb-*),$(VENV)-store/.ready),$(VENV)-store/.ready $(BUILT))
 
 system:
 	@sh deploy/system-packages.sh $(if $(BUNDLE),python,setup)
@@ -57,14 +60,14 @@ $(VENV)/.requirements: $(LOCKS)/requirements.lock $(LOCKS)/requirements-dev.lock
 	@touch $@
 
 $(VENV)-store/.ready: $(LOCKS)/requirements-store.lock | $(UV)
-	$(PYTHON) -m venv $(VENV)-store
+	$(UV) venv -q --allow-existing -p $(PYTHON) $(VENV)-store
 	$(INSTALL) --compile-bytecode -p $(VENV)-store/bin/python --require-hashes -r $(LOCKS)/requirements-store.lock
 	@touch $@
 
 # Node.js and the packages of the console have an environment of their own, and no script of a package runs. Node looks
 # for packages in the folders above a source, so there is a link to them.
 $(VENV)-console/.ready: $(LOCKS)/requirements-console.lock $(addprefix $(CONSOLE)/,package.json package-lock.json .npmrc) | $(UV)
-	$(PYTHON) -m venv $(VENV)-console
+	$(UV) venv -q --allow-existing -p $(PYTHON) $(VENV)-console
 	$(INSTALL) -p $(VENV)-console/bin/python --require-hashes -r $(LOCKS)/requirements-console.lock
 	cp $(filter $(CONSOLE)/%,$^) $(VENV)-console
 	cd $(VENV)-console && PATH="$(abspath $(VENV))-console/bin:$$PATH" npm ci --silent
