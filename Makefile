@@ -82,10 +82,13 @@ console: $(BUILT) ## build the pages of the console
 console-types: setup ## the API's types for the console, after a change of the API
 	@cd tests && $(abspath $(PY)) -m console_types
 
-$(VENV)/.interfaces-$(NAV2_DISTRO): $(VENV)/.requirements $(LOCKS)/build.lock $(shell find services/interfaces -type f -not -name '*.pyc')
+$(VENV)/interfaces/.$(NAV2_DISTRO): $(LOCKS)/build.lock $(shell find services/interfaces -type f -not -name '*.pyc') | $(UV)
 	@rm -rf $(VENV)/interfaces
-	$(if $(BUNDLE),,@echo "building the ROS interface packages (one to two minutes)")
-	$(if $(BUNDLE),,$(UV) build -q -p $(PY) --wheel --build-constraints $(LOCKS)/build.lock -o $(VENV)/interfaces services/interfaces)
+	@echo "building the ROS interface packages (one to two minutes)"
+	$(UV) build -q -p $(PY) --wheel --build-constraints $(LOCKS)/build.lock -o $(VENV)/interfaces services/interfaces
+	@touch $@
+
+$(VENV)/.interfaces-$(NAV2_DISTRO): $(VENV)/.requirements $(if $(BUNDLE),,$(VENV)/interfaces/.$(NAV2_DISTRO))
 	$(INSTALL) --compile-bytecode -p $(PY) --no-deps --reinstall $(or $(BUNDLE),$(VENV)/interfaces)/tms_interfaces-*.whl
 	$(PY) services/interfaces/_wheel/stubs.py
 	@rm -f $(VENV)/.interfaces-*

@@ -37,7 +37,8 @@ A_PROCESS = 10  # machines in one process of the crowd
 SETTLE, WATCH = 2.0, 12.0  # s
 SLOW = 0.25  # s; p99 of the hand-overs is below it if at most 1 % are above it
 CROWD, DRIVEN, FORKS = (Path(__file__).parent / "rig" / name for name in ("crowd.py", "driven.py", "forks.py"))
-FOUND = 4.0  # s until a node has found all others
+FOUND = 3.0  # s between two looks at the memory of a node that finds all others; it grows meanwhile
+LOOKS, SAME = 20, 1.01  # at most; the ratio of two looks
 GONE = 6.0  # s after which discovery has dropped a process that was killed
 
 
@@ -113,8 +114,18 @@ def _bare(own: Rig, ends: dict[str, list[tuple[str, str]]]) -> float:
     file = Path(own.mesh.state) / "ends.json"
     file.write_text(json.dumps(ends), encoding="utf-8")
     with own.beside("same", str(file)) as (pid, _):
+        return _settled(pid)
+
+
+def _settled(pid: int) -> float:
+    """MB of a process whose memory has grown."""
+    memory = 0.0
+    for _ in range(LOOKS):
         time.sleep(FOUND)
-        return pss(pid)
+        memory, before = pss(pid), memory
+        if memory < SAME * before:
+            return memory
+    raise TimeoutError(f"the memory of a bare node still grows after {LOOKS * FOUND:.0f} s")
 
 
 def _site(shares: list[list[str]]) -> AbstractContextManager[Rig]:

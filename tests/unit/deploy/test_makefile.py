@@ -24,7 +24,7 @@ def make(*argv: str) -> str:
 def built(tmp_path: Path) -> str:
     """An environment that was set up after `make interfaces NAV2_DISTRO=humble`."""
     venv = tmp_path / "venv"
-    for file in ("bin/uv", ".requirements", ".interfaces-humble", ".ready"):
+    for file in ("bin/uv", ".requirements", "interfaces/.humble", ".interfaces-humble", ".ready"):
         (venv / file).parent.mkdir(parents=True, exist_ok=True)
         (venv / file).touch()
     for other in (tmp_path / "venv-store", tmp_path / "venv-console"):
