@@ -3,7 +3,7 @@
 set -eu
 venv=$1
 packages=$(echo "$venv"/lib/python3*/site-packages)
-rm -rf "$venv"/bin/uv* "$venv"/include "$venv"/share/tms_forms/*/include "$packages"/pip "$packages"/uv "$packages"/Cython "$packages"/pyximport
+rm -rf "$venv"/bin/uv* "$venv"/include "$packages"/pip "$packages"/uv "$packages"/Cython "$packages"/pyximport
 find "$venv" -name '*.a' -delete
 find "$venv" -name __pycache__ -prune -exec rm -rf {} +
 find "$packages"/numpy "$packages"/lxml -name tests -prune -exec rm -rf {} +

@@ -24,8 +24,7 @@ from tms_runtime.metrics import unready
 
 MACHINES = {"zx200": {"model": "zx200"}, "ic120_1": {"model": "ic120"}, "ic120_2": {"model": "ic120"}}
 SETTLE, WATCH = 5.0, 15.0  # s; the second is also the time between Prometheus' scrapes
-USUAL = 0.3  # s that a bare node needs to start on a usual PC ...
-USUAL_FLEET = 3.8  # s, ... and so many together, on the same one
+USUAL = 0.3  # s that a bare node needs to start on a usual PC
 FLEET = "floor: as many bare action servers, forked at once, until a later node knows them"
 MANY, READY = 40, 12.0  # processes, and s until they are ready
 SHARE = 0.6  # of what as many bare nodes take together that hear the same
@@ -51,7 +50,7 @@ def measure() -> Iterable[Figure]:
             more = MANY - len(rows) + len(subtasks)  # subtasks beside what `make up` has started
             many = first + _start_all(own, subtasks[:more])
             yield Figure("`make up` until ready", "s", first, 15.0, bare_start, usual_floor=USUAL)
-            yield Figure(f"{MANY} processes ready", "s", many, READY, fleet_start, USUAL_FLEET, FLEET)
+            yield Figure(f"{MANY} processes ready", "s", many, READY, fleet_start, note=FLEET)
             _start_all(own, subtasks[more:])
             yield from _costs(own, rows, bare, hearing)
 
