@@ -1,9 +1,10 @@
-"""supervisord whose programs of ours are forks of itself, with the libraries already loaded.
+"""supervisord whose programs of ours are forks of itself, with the libraries and our common modules already loaded.
 
-A start by `execve` spends most of its time and half of its memory on importing the same libraries once more. A fork
-shares them, and supervisord still supervises the real pid. None of the modules that a process runs are loaded here: a
-restarted process always runs the code and configuration that are on disk now. Nothing here opens a ROS context, whose
-threads would not survive the fork (those of LTTng, which rclpy brings, are not missed).
+A start by `execve` spends most of its time and half of its memory on importing the same once more. A fork shares it,
+and supervisord still supervises the real pid. A restarted process always runs the code and configuration that are on
+disk now: once a module that is loaded here has changed there, programs are executed. Modules that only some processes
+run are not loaded here, since their metrics would be everybody's. Nothing here opens a ROS context, whose threads would
+not survive the fork (those of LTTng, which rclpy brings, are not missed).
 """
 
 import ctypes
@@ -14,12 +15,16 @@ import os
 import signal
 import sys
 from collections.abc import Iterable
+from contextlib import suppress
+from pathlib import Path
 from typing import NoReturn
 
 import pydantic
 import setproctitle
 from supervisor.options import ServerOptions
 from supervisor.supervisord import go
+
+from tms_reason import wire
 
 MODULE = "tms_runtime.run"  # programs that are forked; others (none today) are executed as usual
 LIBRARIES = (
@@ -43,6 +48,8 @@ INTERFACES = (
     "tms_msg_ground", "tms_msg_sp", "control_msgs", "nav2_msgs", "com3_msgs", "diagnostic_msgs", "geometry_msgs",
     "nav_msgs", "sensor_msgs", "std_msgs", "std_srvs", "tf2_msgs", "trajectory_msgs", "visualization_msgs",
 )  # fmt: skip
+OURS = ("tms_runtime.run", "tms_runtime.app", "tms_runtime.graph", "tms_kit.subtask_server")  # and all reasons
+SERVICES = Path(__file__).resolve().parents[1]
 MIDDLEWARE = "librmw_fastrtps_cpp.so"
 PR_SET_PDEATHSIG = 1
 HANDLED = (signal.SIGTERM, signal.SIGINT, signal.SIGQUIT, signal.SIGHUP, signal.SIGCHLD, signal.SIGUSR2)
@@ -53,13 +60,17 @@ class Options(ServerOptions):  # type: ignore[misc]
 
     parent = 0  # pid of supervisord, in its child
 
+    def __init__(self) -> None:
+        super().__init__()
+        self.loaded: dict[str, tuple[int, int]] = {}  # see `sources`; empty before `load`
+
     def fork(self) -> int:
         self.parent = os.getpid()
         return os.fork()
 
     def execve(self, filename: str, argv: list[str], env: dict[str, str]) -> None:
         """Become the program, in the child. supervisord has already set pipes, group and working folder."""
-        if argv[1:2] == ["-m"] and argv[2:3] == [MODULE]:
+        if argv[1:2] == ["-m"] and argv[2:3] == [MODULE] and sources(self.loaded) == self.loaded:
             exec_entry(argv, env, self.parent)
         super().execve(filename, argv, env)
 
@@ -106,6 +117,26 @@ def load(processes: Iterable[str]) -> None:
         for kind in ("msg", "srv", "action"):
             _load_types(f"{package}.{kind}")
     ctypes.CDLL(MIDDLEWARE, mode=ctypes.RTLD_GLOBAL)
+    for name in OURS:
+        importlib.import_module(name)
+    wire.load()
+    wire.load.cache_clear()  # each process looks for those that were added since
+
+
+def ours() -> list[str]:
+    """The files of our modules that are loaded."""
+    files = (getattr(module, "__file__", None) for module in list(sys.modules.values()))
+    return [file for file in files if file is not None and file.startswith(f"{SERVICES}/")]
+
+
+def sources(files: Iterable[str]) -> dict[str, tuple[int, int]]:
+    """When each of these files was changed last [ns], and its size [bytes]; none for those that are gone."""
+    found = {}
+    for file in files:
+        with suppress(FileNotFoundError):
+            facts = Path(file).stat()
+            found[file] = (facts.st_mtime_ns, facts.st_size)
+    return found
 
 
 def _load_types(name: str) -> None:
@@ -126,6 +157,7 @@ def main() -> None:
     options = Options()
     options.realize(doc=__doc__)
     load(one.command.split()[-1] for group in options.process_group_configs for one in group.process_configs)
+    options.loaded = sources(ours())
     options.first, options.test = True, False
     go(options)
 

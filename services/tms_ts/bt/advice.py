@@ -65,19 +65,22 @@ def known_keys(written: Written) -> Keys:
 
 def never_written(node: Node, keys: Keys) -> list[Reason]:
     """Warnings of keys that a node needs and that nothing in the document gives a value."""
-    missing = [key for key in node.needed() if node.blackboard.place(key) not in keys.writers]
+    needed = node.needed()
+    if not needed:  # most nodes
+        return []
+    missing = [key for key in needed if node.blackboard.place(key) not in keys.writers]
     return [NeverWritten(key, node.registration_name) for key in missing if node.blackboard.get(key) is MISSING]
 
 
 def literals(node: Node) -> list[Reason]:
     """Port texts that do not fit the port's type, and missing ports without which the node throws."""
-    notes: list[Reason] = [
-        ThrowsWithoutPort(node.registration_name, port)
-        for port in node.needs
-        if port not in node.bindings and node.ports[port].default is MISSING
-    ]
+    notes: list[Reason] = []
+    for port in node.needs:
+        if port not in node.bindings and node.ports[port].default is MISSING:
+            notes.append(ThrowsWithoutPort(node.registration_name, port))
     for port, bound in node.bindings.items():
-        kind, direction = node.ports[port].kind, node.ports[port].direction
-        if direction is not Direction.OUTPUT and isinstance(bound, str) and FROM_TEXT[kind](bound) is MISSING:
-            notes.append(PortType(port, bound, node.registration_name, CPP_NAMES[kind]))
+        if isinstance(bound, str):
+            spec = node.ports[port]
+            if spec.direction is not Direction.OUTPUT and FROM_TEXT[spec.kind](bound) is MISSING:
+                notes.append(PortType(port, bound, node.registration_name, CPP_NAMES[spec.kind]))
     return notes

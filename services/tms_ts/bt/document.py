@@ -89,7 +89,7 @@ class Document:
 
 def children(element: etree._Element) -> Iterator[etree._Element]:
     """The child elements, without comments and processing instructions."""
-    return (child for child in element if isinstance(child.tag, str))
+    return element.iterchildren("*")
 
 
 def described(palette: Iterable[etree._Element]) -> Iterator[tuple[str, frozenset[str]]]:

@@ -35,7 +35,7 @@ class ParsedXml:
     file: str = ""
 
     def attributes(self, element: etree._Element) -> dict[str, str]:
-        found = {str(key): str(value) for key, value in element.attrib.items()}
+        found = {str(key): str(value) for key, value in element.items()}
         line_break, tab = self.marks
         if line_break:
             for key, value in found.items():

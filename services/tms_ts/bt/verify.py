@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from lxml import etree
 
@@ -54,8 +54,7 @@ HINTS: dict[str, Reason] = {
 }
 
 
-@dataclass(frozen=True, slots=True)
-class Use:
+class Use(NamedTuple):
     """What one element asks for."""
 
     tag: str  # as written
@@ -222,6 +221,8 @@ class Rules:
             if key not in RESERVED and key not in cls.ports:
                 ports = ItsPorts(tuple(cls.ports)) if cls.ports else NoPorts()
                 return NoPort(use.id, key), did_you_mean(key, cls.ports) or ports
+        if cls.required.issubset(use.attributes):
+            return None
         for port in sorted(cls.required):
             if port not in use.attributes and cls.ports[port].default is MISSING:
                 return PortMissing(use.id, port), None

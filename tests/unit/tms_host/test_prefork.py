@@ -25,6 +25,8 @@ from tms_host import prefork
 prefork.MODULE = "program"
 signal.signal(signal.SIGTERM, signal.SIG_IGN)
 options = prefork.Options()
+options.loaded = prefork.sources([{file!r}])
+{meanwhile}
 parent = os.getpid()
 child = options.fork()
 if child:
@@ -55,9 +57,12 @@ run.main("tms:db")
 def run(tmp_path: Path):  # type: ignore[no-untyped-def]
     (tmp_path / "program.py").write_text(PROGRAM)
 
-    def exec_entry(name: str, module: str = "program", parent: str = WAITS) -> subprocess.CompletedProcess[str]:
+    def exec_entry(
+        name: str, module: str = "program", parent: str = WAITS, meanwhile: str = ""
+    ) -> subprocess.CompletedProcess[str]:
+        file = str(tmp_path / "program.py")
         code = f"import sys; sys.path.insert(0, {str(tmp_path)!r})" + textwrap.dedent(
-            FORK.format(module=module, name=name, parent=parent, orphan=parent != WAITS)
+            FORK.format(module=module, name=name, parent=parent, orphan=parent != WAITS, file=file, meanwhile=meanwhile)
         )
         return subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=False)
 
@@ -92,14 +97,34 @@ def test_other_programs_are_executed(run) -> None:  # type: ignore[no-untyped-de
     assert "FileNotFoundError" in done.stderr  # no such file: an exec was tried
 
 
-def test_only_libraries_are_shared() -> None:
+@pytest.mark.parametrize("change", ["touch()", "unlink()", "write_text('')"])
+def test_a_program_is_executed_once_a_loaded_module_has_changed(run, change: str) -> None:  # type: ignore[no-untyped-def]
     """What a restarted process runs must come from the disk, not from a supervisord that is weeks old."""
+    done = run("zx200:rc", meanwhile=f"from pathlib import Path; Path(*options.loaded).{change}")
+    assert "FileNotFoundError" in done.stderr  # no such file: an exec was tried
+
+
+def test_supervisord_knows_the_files_of_the_modules_that_it_has_loaded(tmp_path: Path) -> None:
+    conf = tmp_path / "supervisord.conf"
+    conf.write_text(
+        f"[supervisord]\nlogfile={tmp_path}/log\n[program:rc]\ncommand=python -m tms_runtime.run zx200:rc\n"
+    )
+    code = "from tms_host import prefork; prefork.go = lambda own: print(*own.loaded, sep='\\n'); prefork.main()"
+    done = subprocess.run(
+        [sys.executable, "-c", code, "-c", str(conf)], capture_output=True, text=True, timeout=60, check=True
+    )
+    loaded = {str(Path(file).relative_to(PROJECT / "services")) for file in done.stdout.splitlines()}
+    assert {"tms_runtime/run.py", "tms_ros/node.py", "tms_kit/subtask_server.py", "tms_rc/reasons.py"} <= loaded
+
+
+def test_what_only_some_processes_run_is_not_shared() -> None:
+    """Its metrics would be those of all processes."""
     code = f"import sys; {LOAD}; print(*sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=True)
-    loaded = set(done.stdout.split())
-    ours = {path.name for path in Path("services").glob("tms_*")}
-    assert "rclpy.action" in loaded
-    assert {name for name in loaded if name.partition(".")[0] in ours} == {"tms_host", "tms_host.prefork"}
+    loaded = {name for name in done.stdout.split() if name.startswith("tms_")}
+    parts = tuple(f"tms_{name}." for name in ("db", "if", "mc", "rc", "rp", "sim", "sp", "subtasks", "ts", "ur"))
+    assert "tms_runtime.run" in loaded
+    assert {name for name in loaded if name.startswith(parts) and not name.endswith("reasons")} == set()
 
 
 def imported(code: str) -> set[str]:
