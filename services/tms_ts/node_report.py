@@ -14,6 +14,7 @@ from tms_ts.facts import Facts
 from tms_ts.reasons import LeftOut, NodeChanged, NodeChangedBecause, NodeFailed
 
 FEEDBACK_PERIOD = 0.1  # s between messages to the client
+LONGEST = 1.0  # s more between messages that tell the same: a client sees that the run goes on
 CHANGES_A_TICK = 200  # node changes recorded of one tick; an endless loop makes thousands
 FLOOD_REPORTED = 10.0  # s between events that count the changes left out
 CHANGES_A_MESSAGE = 1000
@@ -34,6 +35,7 @@ class NodeReport:
         self._budget = Budget()
         self._changes_of_tick = self._left_out = 0
         self._flood_reported = -FLOOD_REPORTED
+        self._told: tuple[str, list[tuple[Node, Reason | None]]] = "", []  # state and running leaves, last time
         self._next_feedback = 0.0
 
     def begin_tick(self) -> None:
@@ -79,14 +81,16 @@ class NodeReport:
         if now < self._next_feedback and not last:
             return None
         running = [node for node in tree.running() if node.reason]
-        if self._all_reported and not self._changes and not running and now < self._next_feedback + 1.0:
+        told = facts.state, [(node, node.reason) for node in running]
+        if self._all_reported and not self._changes and told == self._told and now < self._next_feedback + LONGEST:
             return None
         facts.reason = running[0].reason if running else facts.reason if facts.state == "stopping" else None
         message = ExecuteTask.Feedback(
             run_id=facts.run_id, state=facts.state, running_leaf=running[0].path if running else "",
             reason=to_line(facts.reason), nodes=self._nodes(tree, running),
         )  # fmt: skip
-        self._all_reported, self._changes, self._next_feedback = True, [], now + FEEDBACK_PERIOD
+        self._all_reported, self._changes, self._told = True, [], told
+        self._next_feedback = now + FEEDBACK_PERIOD
         return message
 
     def _nodes(self, tree: Tree, running: list[Node]) -> list[NodeStatus]:
