@@ -18,6 +18,8 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterable
+from functools import partial
+from typing import TypeVar
 
 from bench.runner import PROJECT, Figure
 from random_grounds import random_ground
@@ -48,7 +50,6 @@ from tms_rp.ways import Ways
 GOALS = 500
 AROUND = 1000  # scenes
 IN_MEMORY = 50  # scenes for the memory
-ROUNDS = 2  # for each scene with a way around; the best counts
 TRAJECTORY = 1.0  # ms for a straight trajectory on a usual PC
 SITES = 200  # with five machines
 FASTEST = 2.0  # ms for the fastest path of tracks on a usual PC
@@ -93,6 +94,7 @@ def model_of(name: str) -> MachineModel:
     return parse(CONFIGS / "machines" / f"{name}.yaml", MachineModel)
 
 
+Made = TypeVar("Made")
 Asked = Callable[[Backhoe, TipGoal], Moves]
 
 
@@ -119,13 +121,12 @@ def plan_all(goal: Asked) -> tuple[list[float], list[float]]:
     for _ in range(GOALS):
         away, turn = rng.uniform(4, 8), rng.uniform(-math.pi, math.pi)
         place = TipGoal(away * math.cos(turn), away * math.sin(turn), rng.uniform(-1, 2), rng.uniform(0, 2))
-        kinematics = clock(lambda place=place: goal(backhoe, place))
-        begun = time.perf_counter()
         with contextlib.suppress(SubtaskFailed):  # out of reach, or in a truck
-            plan = ways.plan(NOW, goal(backhoe, place), scene)
+            moves, kinematics = timed(partial(goal, backhoe, place))
+            plan, taken = timed(partial(ways.plan, NOW, moves, scene))
             if not any(isinstance(note, Around) for note in plan.notes):
                 floors.append(kinematics)
-                times.append((time.perf_counter() - begun) * 1000)
+                times.append(kinematics + taken)
     return times, floors
 
 
@@ -158,18 +159,13 @@ def plan_around(count: int = AROUND) -> tuple[list[float], list[float], list[flo
     for _ in range(count):
         scene = random_scene(rng)
         now, target = (free_pose(rng, clearance, scene) for _ in range(2))
-        floors.append(clock(lambda now=now, target=target: trajectory(model.joints, (*now, 0.0), [(*target, 0.0)])))
-        try:
-            notes = ways.plan(now, Moves((target,)), scene).notes
-        except SubtaskFailed:  # no way, or the target is too near to something
-            continue
-        if not notes:
-            continue
-        # The same work each time: what it takes longer now and then, other programs take.
-        taken = min(clock(lambda now=now, target=target, scene=scene: ways.plan(now, Moves((target,)), scene))
-                    for _ in range(ROUNDS))  # fmt: skip
-        for note in notes:
-            (searches if note == Around(Searched(), note.why) else manners).append(taken)
+        floors.append(clock(partial(trajectory, model.joints, (*now, 0.0), [(*target, 0.0)])))
+        work = partial(ways.plan, now, Moves((target,)), scene)
+        with contextlib.suppress(SubtaskFailed):  # no way, or the target is too near to something
+            plan, taken = timed(work)
+            for note in plan.notes:
+                found = searches if note == Around(Searched(), note.why) else manners
+                found.append(min(taken, clock(work)))  # what the same work takes longer, other programs take
     return manners, searches, floors
 
 
@@ -181,9 +177,12 @@ def plan_tracks() -> tuple[list[float], list[float]]:
     for _ in range(SITES):
         ground, start, goal = random_ground(rng, 5), random_track_pose(rng), random_track_pose(rng)
         question = Question(start, (Goal(*goal),), pace, 0.0, outline, ground)
-        if question.fastest() is None and isinstance(question.answer(), TracksPlan):
-            floors.append(min(clock(question.fastest) for _ in range(ROUNDS)))
-            detours.append(min(clock(question.answer) for _ in range(ROUNDS)))
+        free, fastest = timed(question.fastest)
+        if free is None:
+            answer, taken = timed(question.answer)
+            if isinstance(answer, TracksPlan):
+                floors.append(min(fastest, clock(question.fastest)))
+                detours.append(min(taken, clock(question.answer)))
     return detours, floors
 
 
@@ -194,11 +193,15 @@ def free_pose(rng: random.Random, clearance: Clearance, scene: Scene) -> Angles:
     return pose
 
 
-def clock(work: Callable[[], object]) -> float:
+def timed(work: Callable[[], Made]) -> tuple[Made, float]:
+    """What a work makes, and in how many milliseconds."""
     begun = time.perf_counter()
-    with contextlib.suppress(SubtaskFailed):
-        work()
-    return (time.perf_counter() - begun) * 1000
+    made = work()
+    return made, (time.perf_counter() - begun) * 1000
+
+
+def clock(work: Callable[[], object]) -> float:
+    return timed(work)[1]
 
 
 def share(values: list[float], part: float) -> float:

@@ -35,6 +35,7 @@ SERVICES: dict[str, object] = {"db": {}, "ts": {}}
 FIRST, SECOND = "cps", "east"  # PCs of a site of two schedulers
 A_PROCESS = 10  # machines in one process of the crowd
 SETTLE, WATCH = 2.0, 12.0  # s
+MEMORY = 120.0  # MB
 SLOW = 0.25  # s; p99 of the hand-overs is below it if at most 1 % are above it
 CROWD, DRIVEN, FORKS = (Path(__file__).parent / "rig" / name for name in ("crowd.py", "driven.py", "forks.py"))
 FOUND = 3.0  # s between two looks at the memory of a node that finds all others; it grows meanwhile
@@ -54,7 +55,7 @@ class Cost:
     left: int  # runs that have not ended END_LIMIT after the stop
     cpu: float  # % of a core, a scheduler's
     memory: float  # MB, a scheduler's
-    bare: float  # MB, of a bare node with the same ends
+    bare: float | None  # MB, of a bare node with the same ends, where the scheduler's are more than MEMORY
 
 
 def measure() -> Iterable[Figure]:
@@ -70,7 +71,7 @@ def measure() -> Iterable[Figure]:
         yield Figure("  stop heard by the last machine", "ms", cost.received, 50.0, least.received, usual_floor=10.0)
         yield Figure("  stop until the last goal ends", "ms", cost.cancelled, 700.0, least.cancelled)
         yield Figure(f"  runs left after {END_LIMIT:.0f} s", "", float(cost.left), 0.5)
-        yield Figure("  memory (PSS) of tms:ts", "MB", cost.memory, 120.0, cost.bare)
+        yield Figure("  memory (PSS) of tms:ts", "MB", cost.memory, MEMORY, cost.bare)
 
 
 def _cost(size: int, count: int) -> Cost:
@@ -93,7 +94,7 @@ def _cost(size: int, count: int) -> Cost:
         received, cancelled = after_press(dispatcher.press(ros, len(crowds)), crowds)
         left = dispatcher.left(calls)
         stack.close()
-        bare = _bare(own, ends)
+        bare = _bare(own, ends) if memory > MEMORY else None
         return Cost(late, handed_over, slow, received, cancelled, left, cpu, memory, bare)
 
 
