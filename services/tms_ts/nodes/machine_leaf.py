@@ -22,8 +22,6 @@ from tms_ts.world import Goal
 # Names that ROS accepts: a topic may have 247 letters, including the machine's name and the endings of an action.
 ROS_NAME = re.compile(r"(?!.{201})[A-Za-z_][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*", re.ASCII)
 
-UNFINISHED = (GoalState.RUNNING, GoalState.SENDING)
-
 
 class MachineLeaf(PlainAction):
     """A leaf that sends goals to the action `<model_name>/<what the subtask's port names>`."""
@@ -64,7 +62,7 @@ class MachineLeaf(PlainAction):
 
     def progress(self, goal: Goal) -> Status:
         state = goal.state
-        if state in UNFINISHED:
+        if not state.final:
             self.reason = goal.reason or goal.feedback or (Working() if state is GoalState.RUNNING else Sending())
             return RUNNING
         self.reason = goal.reason
