@@ -16,6 +16,7 @@ from fleet import Fleet
 
 from conftest import PROJECT
 
+SITE_IMAGE = "tms:site"
 collect_ignore = [] if os.environ.get("TMS_FLEET") else ["test_fleet.py"]  # it asks for the whole PC
 
 
@@ -56,11 +57,23 @@ def engine() -> Iterator[Engine]:
 @pytest.fixture(scope="session")
 def image(engine: Engine) -> None:
     """The image with the embedded store, of this checkout."""
-    done = script("image.sh", IMAGE, "demo", check=False)
+    build(engine, IMAGE, "demo")
+
+
+@pytest.fixture(scope="module")
+def site_image(engine: Engine) -> str:
+    """The name of the image of a site's PCs, of this checkout."""
+    build(engine, SITE_IMAGE, "site")
+    return SITE_IMAGE
+
+
+def build(engine: Engine, name: str, target: str) -> None:
+    """Build an image."""
+    done = script("image.sh", name, target, check=False)
     if "error during connect" in done.stderr:  # Docker 20.10 may crash as it reads its cache: moby/buildkit#2861
         engine.stop()
         engine.start()
-        done = script("image.sh", IMAGE, "demo", check=False)
+        done = script("image.sh", name, target, check=False)
     assert done.returncode == 0, done.stderr[-2000:]
 
 
