@@ -44,7 +44,7 @@ help: ## this list
 
 setup: ## everything that the other targets need (they call it)
 	@$(MAKE) --no-print-directory --jobs=3 ready
-	@$(PY) -m compileall -q -x 'services/interfaces' services $(wildcard tests)  # where Python itself may not write it, each process would compile anew
+	@$(PY) -m compileall -q -j 0 -x 'services/interfaces' services $(wildcard tests)  # where Python itself may not write it, each process would compile anew
 
 ready: $(VENV)/.ready $(if $(BUNDLE),$(if $(wildcard wheels/secantusdb-*),$(VENV)-store/.ready),$(VENV)-store/.ready $(BUILT))
 
