@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import time
+
 from soak.growth import Sample, growth, table
 from soak.kills import BACK, SEEN, Kills
 
@@ -30,6 +32,13 @@ def test_a_kill_explains_what_follows_it_and_nothing_else() -> None:
     assert kills.explain_new(100.0 + SEEN, "tms:ts") and kills.explain_late(100.0 + BACK)
     assert not kills.explain_new(101.0, "tms:db") and not kills.explain_new(99.0, "tms:ts")
     assert not kills.explain_late(101.0 + BACK) and not kills.explain_late(99.0)
+
+
+def test_what_the_work_starts_anew_has_not_ended_by_itself() -> None:
+    kills = Kills(None)  # type: ignore[arg-type]
+    kills.restarted("tms:ground")
+    assert kills.explain_new(time.time(), "tms:ground") and not kills.explain_new(time.time(), "tms:db")
+    assert kills.count("tms:ground") == 0  # it was asked to end, and has kept what it held
 
 
 def test_the_table_tells_what_each_process_held() -> None:

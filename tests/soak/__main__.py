@@ -120,7 +120,7 @@ def main() -> int:
 
 def _soak(own: Rig, seconds: float) -> int:
     kills = Kills(Supervisor(own.site))
-    work, found = Work(own.mesh, lambda: kills.count("tms:db")), list[str]()
+    work, found = Work(own.mesh, kills), list[str]()
     with own.node() as node, _readings(), Watch(own, kills, Receipts(node, own.site, kills)) as watch:
         deadline = time.monotonic() + seconds
         try:

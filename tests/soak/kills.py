@@ -37,6 +37,7 @@ class Kills:
     def __init__(self, supervisor: Supervisor) -> None:
         self._supervisor, self._next = supervisor, itertools.cycle(KILLED)
         self.done: list[tuple[float, str]] = []  # when, s since 1970, and which
+        self._restarted: list[tuple[float, str]] = []  # those that the work itself has started anew
 
     def kill(self) -> str:
         """Kill the next that runs."""
@@ -50,9 +51,13 @@ class Kills:
         """Whether a tick may have been late at a moment [s since 1970]."""
         return any(0 <= at - when <= BACK for when, _ in self.done)
 
+    def restarted(self, name: str) -> None:
+        """Note that the work has started a process anew just now."""
+        self._restarted.append((time.time(), name))
+
     def explain_new(self, at: float, name: str) -> bool:
         """Whether a process may have begun anew before a moment [s since 1970]."""
-        return any(0 <= at - when <= SEEN and name == killed for when, killed in self.done)
+        return any(0 <= at - when <= SEEN and name == one for when, one in (*self.done, *self._restarted))
 
     def count(self, name: str) -> int:
         return sum(killed == name for _, killed in self.done)

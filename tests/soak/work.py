@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Callable
 
 import area_file
 import earth_job
 from conftest import Mesh
+from soak.kills import Kills
 
 VOLUME = 6.0  # m3 of a job, as it lay: more than one truck takes
 JOBS = 5  # on a ground
@@ -24,9 +24,8 @@ class Failed(Exception):
 class Work:
     """Its jobs. A run that its scheduler's kill has interrupted is resumed, as a person would."""
 
-    def __init__(self, mesh: Mesh, lost: Callable[[], int]) -> None:
-        """`lost`: how often tms:db was killed."""
-        self._mesh, self._lost = mesh, lost
+    def __init__(self, mesh: Mesh, kills: Kills) -> None:
+        self._mesh, self._kills = mesh, kills
         self.jobs = self.resumed = 0
 
     def job(self) -> None:
@@ -45,7 +44,7 @@ class Work:
         if state != "success":
             raise Failed(f"job {self.jobs + 1} ended as {state}: {self._mesh.tms('events', run).stdout[-1500:]}")
         self._mesh.wait_ready()
-        earth_job.check(self._mesh, volume, killed=self._lost())
+        earth_job.check(self._mesh, volume, killed=self._kills.count("tms:db"))
         self.jobs += 1
 
     def _end(self, run: str) -> str:
@@ -69,6 +68,7 @@ class Work:
         for file in (self._mesh.state / "ground.npz", *self._mesh.state.glob("ground.journal.*")):
             file.unlink(missing_ok=True)
         self._mesh.tms("start", "tms:ground")
+        self._kills.restarted("tms:ground")
 
     def once(self) -> list[str]:
         """What is wrong with the list of all runs."""
