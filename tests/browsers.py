@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
-from playwright.sync_api import Browser, sync_playwright
+from playwright.sync_api import Browser, Page, sync_playwright
 
 from conftest import tool
 
@@ -29,6 +29,17 @@ def chromium() -> Iterator[Browser]:
         browser = playwright.chromium.launch(executable_path=program, args=FLAGS)
         yield browser
         browser.close()
+
+
+def narrated(page: Page) -> Page:
+    """The page, which prints what it asks for and what its scripts tell: pytest shows that of a failed test."""
+    page.on("framenavigated", lambda frame: print(f"page: is at {frame.url}"))
+    page.on("request", lambda one: print(f"page: {one.method} {one.url}"))
+    page.on("response", lambda one: print(f"page: {one.status} {one.url}"))
+    page.on("requestfailed", lambda one: print(f"page: {one.failure} {one.url}"))
+    page.on("console", lambda line: print(f"page: {line.type}: {line.text}"))
+    page.on("pageerror", lambda error: print(f"page: script failed: {error}"))
+    return page
 
 
 def ask(address: str, path: str, body: Any = None) -> Any:

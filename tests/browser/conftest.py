@@ -7,7 +7,7 @@ import pytest
 from playwright.sync_api import Browser, Page, expect
 
 import browsers
-from browsers import LIMIT, ask
+from browsers import LIMIT, ask, narrated
 from conftest import PROJECT, Mesh, wait_until
 
 SHOTS = PROJECT / ".state" / "screenshots"
@@ -30,7 +30,7 @@ def page(chromium: Browser, request: pytest.FixtureRequest) -> Iterator[Page]:
     """An empty page of a tablet in English; what it looks like at the end is kept, and no script may have failed."""
     context = chromium.new_context(viewport={"width": 1280, "height": 800}, locale="en-GB")
     context.set_default_timeout(LIMIT * 1000)
-    page = context.new_page()
+    page = narrated(context.new_page())
     problems: list[str] = []
     page.on("pageerror", lambda error: problems.append(str(error)))
     yield page

@@ -11,6 +11,7 @@ import yaml
 from playwright.sync_api import Browser, Page, expect
 
 import programs
+from browsers import narrated
 from conftest import ports_of, site_data, tool, wait_until
 from tms_config.config import load_site
 from tms_runtime import environment
@@ -84,7 +85,7 @@ def console(server: Server) -> str:
 @pytest.fixture
 def secure_page(chromium: Browser) -> Iterator[Page]:
     context = chromium.new_context(locale="en-GB", ignore_https_errors=True)
-    yield context.new_page()
+    yield narrated(context.new_page())
     context.close()
 
 
