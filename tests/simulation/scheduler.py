@@ -9,7 +9,7 @@ from simulation.disk import Entry, RunDisk
 from simulation.execution import Execution
 from simulation.gateway import State
 from simulation.host import alone, press
-from simulation.lease import FORGET, PermitProcess
+from simulation.lease import FORGET, Asserted, PermitProcess
 from simulation.relay import Relay
 from simulation.task import Task, some_task
 from simulation.unit import Orphan, Unit
@@ -80,6 +80,8 @@ class Scheduler(PermitProcess):
                 gateway = unit.gateway
                 if gateway.notes.run != run.number:
                     continue  # since the machine was last seen to stand, no goal of it has left
+                if self.permits[unit.name].asserted is not Asserted.ALIVE:
+                    continue  # of a run that hangs: lost before, and a person may have armed the machine since
                 unit.orphan = Orphan(run.number, self.world.now, gateway.life, gateway.worked_for())
         super().kill()
         self.disk.killed()

@@ -152,6 +152,11 @@ def test_a_rearm_whose_answer_is_lost_is_one() -> None:
     assert Schedule(2869398733).run().violation == ""
 
 
+def test_a_machine_that_was_armed_after_its_run_was_lost_is_no_orphan() -> None:
+    """The run hung, its gateway latched, a person armed it, and then the scheduler was killed with the run."""
+    assert Schedule(178243126).run().violation == ""
+
+
 def test_a_subtask_that_nobody_knew_is_found_to_be_a_later_one() -> None:
     """The host agent was frozen before it had told of it, and the subtask was killed during its goal."""
     assert Schedule(1120741919).run().violation == ""
