@@ -11,7 +11,8 @@ find "$venv" -type f \( -name '*.a' -o -name '*.c' -o -name '*.cmake' -o -name '
 find "$packages"/numpy "$packages"/lxml -name tests -prune -exec rm -rf {} +
 # Numbers and dates of a thousand regions: only the two languages of the texts are read.
 find "$packages"/babel/locale-data -name '*.dat' ! -name root.dat ! -name 'en*' ! -name 'ja*' -delete
-find "$packages" "$venv"/lib -maxdepth 3 -name "*.so*" -type f -not -path "*.libs/*" -exec strip --strip-debug {} +
+# Not those in *.libs: patchelf has moved their segments, and the loader refuses them after strip.
+find "$packages" "$venv"/lib -maxdepth 3 -name '*.so*' -type f -not -path '*.libs/*' -exec strip --strip-debug {} +
 linked() { # COPY FILE TARGET: as a link, if they are the same
   if [ -f "$1" ] && [ ! -L "$1" ] && cmp -s "$1" "$2"; then ln -sf "$3" "$1"; fi
 }
