@@ -41,6 +41,11 @@ class StopScenario:
     latches: bool = False  # no machine may move afterwards until a person has re-armed it
 
     @property
+    def own(self) -> bool:
+        """Whether it concerns one machine alone."""
+        return self.moves and not self.shared
+
+    @property
     def name(self) -> str:
         """The name of the stop for people."""
         return " ".join([self.how.value, *(["+".join(self.processes)] if self.processes else [])])

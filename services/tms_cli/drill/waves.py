@@ -14,7 +14,7 @@ from tms_cli.drill.stand_ins import NICE, StandIns
 from tms_cli.drill.trials import LEAD, Hand, Struck
 from tms_cli.drill.verdict import Row, empty
 from tms_cli.reasons import StandInsEnded
-from tms_config.clock import monotonic, unix_time
+from tms_config.clock import unix_time
 from tms_config.config import Site
 from tms_reason.errors import TmsError
 from tms_ros.node import Ros
@@ -38,24 +38,23 @@ class Waves:
         self.rows: list[Row] = []
 
     def warm_up(self) -> None:
-        """Move each machine once, one after another, so that not all subtasks start at the same time.
+        """Move each machine once, so that all subtasks run before the first trial.
 
         Raises:
             TmsError: a machine does not move.
         """
-        for hand in self._hands.values():
-            hand.begin()
+        list(self._pool.map(Hand.begin, self._hands.values()))
         list(self._pool.map(lambda hand: hand.work.end(), self._hands.values()))
 
-    def go(self, plan: Sequence[list[Trial]], seconds: float) -> list[Row]:
-        """Make trials while the time lasts; the rest is left out. Trials that prove nothing are repeated last.
+    def go(self, plan: Sequence[list[Trial]]) -> list[Row]:
+        """Make the trials, however slow the PC is. Trials that prove nothing are repeated last.
 
         Raises:
             TmsError: a stand-in has ended, so that there is no machine any more.
         """
-        todo, deadline, again = list(plan), monotonic() + seconds, len(plan)
+        todo, again = list(plan), len(plan)
         self._total = sum(map(len, plan))
-        while todo and monotonic() < deadline:
+        while todo:
             try:
                 mesh.wait_ready(self._site, lambda _: None)
             except TmsError as error:
@@ -77,17 +76,30 @@ class Waves:
 
     def _wave(self, wave: list[Trial]) -> list[Trial]:
         """Make one wave; returns the trials to repeat, which proved nothing or failed."""
-        began = self._each(wave, lambda trial: self._hands[trial.machine].begin())
+        if all(trial.stop.own for trial in wave):
+            return self._note(wave, self._each(wave, self._alone))
+        began = self._each(wave, self._begin)
         ready = [trial for trial, at in zip(wave, began, strict=True) if at is not None]
         shared = any(trial.stop.shared for trial in ready)
-        rows = self._shared(ready) if shared else self._each(ready, self._single)
+        made = dict(zip(ready, self._shared(ready) if shared else self._each(ready, self._single), strict=True))
         self._each([trial for trial in wave if trial not in ready], self._end)
-        return self._note(wave, dict(zip([trial.machine for trial in ready], rows, strict=True)))
+        return self._note(wave, [made.get(trial) for trial in wave])
 
-    def _note(self, wave: list[Trial], rows: dict[str, Row | None]) -> list[Trial]:
+    def _begin(self, trial: Trial) -> float:
+        return self._hands[trial.machine].begin()
+
+    def _alone(self, trial: Trial) -> Row:
+        """Make a trial that concerns no other machine, as soon as its own moves."""
+        try:
+            self._begin(trial)
+        except (TmsError, TimeoutError):
+            self._end(trial)
+            raise
+        return self._single(trial)
+
+    def _note(self, wave: list[Trial], rows: Sequence[Row | None]) -> list[Trial]:
         missed = []
-        for trial in wave:
-            row = rows.get(trial.machine)
+        for trial, row in zip(wave, rows, strict=True):
             if row is None or row.void:
                 missed.append(trial)
             if row is not None:
