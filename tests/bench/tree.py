@@ -25,9 +25,9 @@ def measure() -> Iterable[Figure]:
     tree, plain = load(text, world=world), plain_py_trees()
     assert tree.tick() is Status.RUNNING
     plain.tick_once()
-    build, plain_tick = milliseconds(plain_py_trees, 15), milliseconds(plain.tick_once, 50)
-    yield Figure("load", "ms", milliseconds(lambda: load(text, world=world), 15), 20.0, build, usual_floor=4.8)
-    yield Figure("idle tick", "ms", milliseconds(tree.tick, 200), 0.1, plain_tick, usual_floor=0.69)
+    build, plain_tick = milliseconds(plain_py_trees, 50), milliseconds(plain.tick_once, 1000)
+    yield Figure("load", "ms", milliseconds(lambda: load(text, world=world), 50), 20.0, build, usual_floor=4.8)
+    yield Figure("idle tick", "ms", milliseconds(tree.tick, 5000), 0.1, plain_tick, usual_floor=0.69)
     count = len(tree.nodes)
     weight, plain_weight = weight_of(lambda: load(text, world=world)), weight_of(plain_py_trees)
     yield Figure("memory a node", "B", weight / count, 3072.0, plain_weight / count)
