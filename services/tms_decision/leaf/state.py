@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, field
 from enum import Enum
+from functools import cached_property
 
 from tms_decision.leaf.effects import Effect, Note
 from tms_decision.leaf.events import GoalAsked, Key
@@ -21,7 +22,7 @@ class GoalState(Enum):
     FAILED = "was aborted, rejected or not deliverable"
     CANCELLED = "was halted by the tree, or by the end of the run"
 
-    @property
+    @cached_property  # each tick asks it of each leaf
     def final(self) -> bool:
         return self in (GoalState.SUCCEEDED, GoalState.FAILED, GoalState.CANCELLED)
 

@@ -19,7 +19,6 @@ from tms_ts.bt.status import FAILURE, RUNNING, SUCCESS, Status
 from tms_ts.tree_reasons import NameMissing, NoMachines, NoRosName, Sending, Working
 from tms_ts.world import Goal
 
-WORKS = GoalState.RUNNING  # looked up once: a tick asks hundreds of leaves
 # Names that ROS accepts: a topic may have 247 letters, including the machine's name and the endings of an action.
 ROS_NAME = re.compile(r"(?!.{201})[A-Za-z_][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*", re.ASCII)
 
@@ -63,8 +62,8 @@ class MachineLeaf(PlainAction):
 
     def progress(self, goal: Goal) -> Status:
         state = goal.state
-        if state is WORKS or not state.final:
-            self.reason = goal.reason or goal.feedback or (Working() if state is WORKS else Sending())
+        if not state.final:
+            self.reason = goal.reason or goal.feedback or (Working() if state is GoalState.RUNNING else Sending())
             return RUNNING
         self.reason = goal.reason
         self.goal = None

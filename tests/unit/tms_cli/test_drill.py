@@ -57,6 +57,10 @@ def test_four_rounds_have_every_stop_with_every_fault() -> None:
     assert {(stop, fault) for stop in SINGLE for fault in FAULTS if RP not in stop.processes} <= tried
 
 
+def test_only_trials_of_one_machine_alone_begin_each_for_itself() -> None:
+    assert {stop for stop in EVERY_STOP if stop.own} == set(SINGLE)
+
+
 def test_a_plan_can_be_repeated() -> None:
     assert plan(3, MACHINES, 2, quick=False) == plan(3, MACHINES, 2, quick=False)
     assert plan(3, MACHINES, 2, quick=False) != plan(4, MACHINES, 2, quick=False)
