@@ -1,5 +1,6 @@
 """The machine's own border: its motion actions, and the commands that stop it. No call here waits."""
 
+import os
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
@@ -88,24 +89,27 @@ class Controls:
         self._unanswered: dict[str, tuple[float, Callable[[], None]]] = {}
         self._released = float("-inf")  # s, monotonic
         self._cmd_vel = ros.publisher(Twist, f"/{machine}/{border.cmd_vel}", 1) if border.cmd_vel else None
-        emg_stop = f"/{machine}/{border.emg_stop}"
         self._emg_stop: Publisher[Bool] | None = None
         if border.emg_stop:
             lives = 0.0 if keeps_emergency else PRESS_LIVES
-            self._emg_stop = ros.publisher(Bool, emg_stop, 1, latched=True, lives=lives)
+            self._emg_stop = ros.publisher(Bool, f"/{machine}/{border.emg_stop}", 1, latched=True, lives=lives)
 
     def cancel_everything(self) -> None:
         """Cancel the goals of all clients, by requests with zero id."""
         self._ros.on_executor(self._cancel)
 
     def _cancel(self) -> None:
-        for service in self._cancels:
+        """Send every cancel, then look which servers are there: at a large site that takes as long as all the rest."""
+        asked = CancelGoal.Request()
+        sent = [self._ros.call_now(CancelGoal, one, asked, partial(self._taken, one)) for one in self._cancels]
+        os.sched_yield()  # to this PC's other gateways, which have the same priority: all machines may be stopped now
+        for service, forget in zip(self._cancels, sent, strict=True):
             if service in self._unanswered:  # servers take requests in order: the next answer stands for both
                 self._unanswered.pop(service)[1]()
-            taken = partial(self._taken, service)
-            forget = self._ros.call_then(CancelGoal, service, CancelGoal.Request(), taken)
-            if forget is not None:
+            if self._ros.has_service(CancelGoal, service):
                 self._unanswered[service] = monotonic(), forget
+            else:
+                forget()
 
     def _taken(self, service: str, _answer: CancelGoal.Response) -> None:
         self._unanswered.pop(service, None)

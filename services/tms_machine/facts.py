@@ -28,9 +28,7 @@ def machine_facts(machine: str, model: MachineModel, border: Border, speed: floa
     drive_response = responses.pop(DRIVE, None)
     tops = {} if drive is None else {"drive_velocity": drive.velocity, "turn_velocity": drive.turn_velocity}
     return MachineFacts(
-        machine,
-        {name: JointFacts(joint.velocity, joint.min, joint.max) for name, joint in joints.items()},
-        responses,
+        machine, {name: JointFacts(joint.velocity, joint.min, joint.max) for name, joint in joints.items()}, responses,
         StillFacts(still.velocity, still.linear, still.angular, still.seconds),
         {name: _source(one, f"/{machine}/{getattr(border, name)}") for name, one in border.sources.items()},
         drive_response, stops_at_once=bool(border.emg_stop) and border.emg_stop_at_once, jumps=_jumps(model, border),

@@ -1,6 +1,5 @@
 """Process `<machine>:rc`: the machine's gateway. Its stops need no database, no scheduler and no console."""
 
-import os
 import threading
 
 from tms_config.clock import monotonic, unix_time
@@ -64,7 +63,7 @@ def _serve(app: App, claim: Claim) -> None:
         drives = Holder(app, controls, lambda: gateway.watch.seen(monotonic()))
     shell.does(Zero, lambda _: drives.zero())
     shell.does(Emergency, lambda effect: drives.emergency(effect.on))
-    shell.does(CancelAll, lambda _: _cancel(controls))
+    shell.does(CancelAll, lambda _: controls.cancel_everything())
 
     def look(seen: Gateway) -> Beat:
         relayed_goals.look(app, servers, seen, monotonic())
@@ -82,13 +81,6 @@ def _serve(app: App, claim: Claim) -> None:
     app.ros.on_executor(lambda: permits.listen(app, shell))  # no callback may come before all of them exist
     _stand_by_goals(app)
     app.ready_when(state.unready)
-
-
-def _cancel(controls: Controls) -> None:
-    controls.cancel_everything()
-    # The stop is sent. Where all machines are stopped, the PC's other gateways send theirs before this one goes on with
-    # its proof: they have the same real-time priority.
-    os.sched_yield()
 
 
 def _stand_by_goals(app: App) -> None:

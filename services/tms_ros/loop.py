@@ -35,11 +35,7 @@ class EventLoop:
     """A node, the thread that runs its callbacks, and the steps and coroutines that run there, too."""
 
     def __init__(
-        self,
-        name: str,
-        namespace: str = "/",
-        process: str = "",
-        creating: AbstractContextManager[None] | None = None,
+        self, name: str, namespace: str = "/", process: str = "", creating: AbstractContextManager[None] | None = None
     ) -> None:
         """`process` is the name that people know, as `tms ps` lists it; the node is made inside of `creating`."""
         self.process = process or name

@@ -41,8 +41,8 @@ class Ros:
 
         self.offer, self.offer_slow, self.prepare = services.offer, services.offer_slow, services.prepare
         self.call, self.call_async = services.call, services.call_async
-        self.call_then, self.call_unanswered = services.call_then, services.call_unanswered
-        self.has_service = services.has_service
+        self.call_then, self.call_now = services.call_then, services.call_now
+        self.call_unanswered, self.has_service = services.call_unanswered, services.has_service
 
         self.serve = self._served.serve
 

@@ -30,10 +30,7 @@ class Services:
         self._making = threading.Lock()
 
     def offer(
-        self,
-        service_type: ServiceType[Req, Res],
-        name: str,
-        handler: Callable[[Req, Res], Res | Awaitable[Res]],
+        self, service_type: ServiceType[Req, Res], name: str, handler: Callable[[Req, Res], Res | Awaitable[Res]]
     ) -> Any:
         """Serve a service; the handler runs on the executor thread and must be quick, or be a coroutine function."""
         service = self._loop.node.create_service(
@@ -121,13 +118,18 @@ class Services:
     def call_then(
         self, service_type: ServiceType[Req, Res], name: str, request: Req, answered: Callable[[Res], None]
     ) -> Callable[[], None] | None:
-        """Send a request; `answered` is called on the executor thread, where this must be called, too.
+        """`call_now`, or None when the service does not exist."""
+        there = self.has_service(service_type, name)
+        return self.call_now(service_type, name, request, answered) if there else None
 
-        Returns a function that drops the request, or None when the service does not exist.
+    def call_now(
+        self, service_type: ServiceType[Req, Res], name: str, request: Req, answered: Callable[[Res], None]
+    ) -> Callable[[], None]:
+        """Send a request, whether its service exists or not: rmw looks through the whole graph for that.
+
+        `answered` is called on the executor thread, where this must be called, too. Returns how to drop the request.
         """
         client = self._service(service_type, name)
-        if not client.service_is_ready():
-            return None
         future = client.call_async(request)
         future.add_done_callback(lambda done: answered(done.result()))
         return lambda: client.remove_pending_request(future)
