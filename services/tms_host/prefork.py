@@ -24,6 +24,7 @@ import setproctitle
 from supervisor.options import ServerOptions
 from supervisor.supervisord import go
 
+from tms_host.supervisor import AT_ONCE
 from tms_reason import wire
 
 MODULE = "tms_runtime.run"  # programs that are forked; others (none today) are executed as usual
@@ -56,9 +57,10 @@ HANDLED = (signal.SIGTERM, signal.SIGINT, signal.SIGQUIT, signal.SIGHUP, signal.
 
 
 class Options(ServerOptions):  # type: ignore[misc]
-    """supervisord's calls of the operating system, with one of them replaced."""
+    """supervisord's calls of the operating system, with two of them replaced."""
 
     parent = 0  # pid of supervisord, in its child
+    unloaded = 0  # programs to fork before `load`
 
     def __init__(self) -> None:
         super().__init__()
@@ -66,7 +68,21 @@ class Options(ServerOptions):  # type: ignore[misc]
 
     def fork(self) -> int:
         self.parent = os.getpid()
+        if self.unloaded:
+            self.unloaded -= 1
+        elif not self.loaded:
+            self._load()
         return os.fork()
+
+    def _load(self) -> None:
+        """Load what is forked, while a program that shares nothing of it starts on another processor."""
+        try:
+            load(one.command.split()[-1] for group in self.process_group_configs for one in group.process_configs)
+        except ImportError as error:
+            self.logger.critical(f"a library of all programs cannot be loaded: {error}")
+            raise
+        self.loaded = sources(ours())
+        gc.freeze()  # or the next collection would write to pages that are shared with the forks
 
     def execve(self, filename: str, argv: list[str], env: dict[str, str]) -> None:
         """Become the program, in the child. supervisord has already set pipes, group and working folder."""
@@ -156,8 +172,8 @@ def main() -> None:
     """Run supervisord with the arguments of the command line."""
     options = Options()
     options.realize(doc=__doc__)
-    load(one.command.split()[-1] for group in options.process_group_configs for one in group.process_configs)
-    options.loaded = sources(ours())
+    programs = [one for group in options.process_group_configs for one in group.process_configs]
+    options.unloaded = sum(one.priority == AT_ONCE and one.autostart for one in programs)
     options.first, options.test = True, False
     go(options)
 

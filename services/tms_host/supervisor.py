@@ -26,6 +26,7 @@ from tms_reason.errors import ConfigError, TmsError
 from tms_runtime.environment import environment
 from tms_runtime.state_folder import UMASK
 
+AT_ONCE = 1  # priority of programs that start while the libraries of ours are loaded, see prefork.py; else 999
 START_SECONDS = 1  # a process that ends sooner counts as failed to start
 STOP_SECONDS = 3  # the runtime ends within 2
 END_LIMIT = STOP_SECONDS + 1.0  # s; supervisord kills after STOP_SECONDS
@@ -73,8 +74,9 @@ def render(site: Site, rows: tuple[Process, ...] | None = None) -> str:
     rows = here(site) if rows is None else rows
     parts = [_daemon(site), *(_program(site, row) for row in rows)]
     for group in dict.fromkeys(row.group for row in rows):
-        members = ",".join(_section(row) for row in rows if row.group == group)
-        parts.append(f"[group:{group}]\nprograms={members}\n")
+        members = [row for row in rows if row.group == group]
+        names, first = ",".join(map(_section, members)), min(map(_priority, members))
+        parts.append(f"[group:{group}]\nprograms={names}\npriority={first}\n")
     return "\n".join(parts)
 
 
@@ -109,6 +111,7 @@ process_name={row.name}
 command="{_escape(sys.executable)}" -m tms_runtime.run {row.full}
 autostart={str(row.autostart).lower()}
 autorestart=true
+priority={_priority(row)}
 startsecs={START_SECONDS}
 startretries=3
 stopsignal=TERM
@@ -130,6 +133,10 @@ def log_file(site: Site, name: str) -> Path:
 
 def _section(row: Process) -> str:
     return f"{row.group}.{row.name}"
+
+
+def _priority(row: Process) -> int:
+    return 999 if row.ours else AT_ONCE
 
 
 def _escape(text: str) -> str:

@@ -11,7 +11,7 @@ from conftest import site_data
 from tms_config.config import Site, load_site
 from tms_config.processes import table
 from tms_host import supervisor as module
-from tms_host.supervisor import Supervisor, SupervisorDown, render, runtime_folder, socket_path
+from tms_host.supervisor import AT_ONCE, Supervisor, SupervisorDown, render, runtime_folder, socket_path
 from tms_reason.errors import ConfigError, TmsError
 
 
@@ -38,6 +38,14 @@ def test_subtasks_wait_until_a_task_names_them(site: Site) -> None:
     parser.read_string(render(site))
     assert parser["program:zx200.subtask_zx200_change_pose"]["autostart"] == "false"
     assert parser["program:zx200.rc"]["autostart"] == "true"
+
+
+def test_the_store_starts_first(site: Site) -> None:
+    """Its start needs none of the libraries that are loaded for the others, and tms:db waits for it."""
+    parser = configparser.RawConfigParser()
+    parser.read_string(render(site))
+    first = {name for name in parser.sections() if parser[name].get("priority") == str(AT_ONCE)}
+    assert first == {"group:tms", "program:tms.store"}
 
 
 def test_percent_signs_in_paths_are_escaped(site: Site) -> None:
