@@ -25,6 +25,7 @@ from tms_ros.quality import SERVICE
 from tms_ros.reasons import NoServer
 
 UNKNOWN_GOAL = 2  # action_msgs/CancelGoal: the server does not know the goal, so it was restarted
+STAYS = 0.25  # s for which a server counts as there after a look, which goes through the whole graph of the site
 DISCOVERY_LEASE = 6.0  # s after which discovery itself has dropped a dead process (5 s in our DDS profile)
 
 
@@ -32,10 +33,7 @@ class Call(Generic[R, F]):
     """A goal that this process sent. All fields are set on the executor thread, readable from any."""
 
     def __init__(
-        self,
-        goal_id: bytes,
-        on_change: Callable[["Call[R, F]"], None] | None,
-        on_feedback: Callable[[F], None] | None,
+        self, goal_id: bytes, on_change: Callable[["Call[R, F]"], None] | None, on_feedback: Callable[[F], None] | None
     ) -> None:
         self.id = goal_id
         self.accepted = False
@@ -122,6 +120,7 @@ class Peer(Generic[G, R, F]):
         self._open: list[Call[R, F]] = []  # used on the executor thread only
         self._taken_by: frozenset[bytes] = frozenset()  # servers that could have taken the last goal
         self._dead_until = 0.0
+        self._there_until = self._stays_until = float("-inf")  # monotonic [s], see STAYS
         self._dead: frozenset[bytes] = frozenset()  # servers that are known to be gone, before discovery drops them
         self._client = SureActionClient(
             loop.node, action_type, name, callback_group=loop.group, goal_service_qos_profile=SERVICE,
@@ -130,13 +129,19 @@ class Peer(Generic[G, R, F]):
 
     def ready(self) -> bool:
         """Whether a server is there and connected in both directions."""
-        if self._dead and (monotonic() > self._dead_until or self._servers() - self._dead):
+        now = monotonic()
+        if self._dead and (now > self._dead_until or self._servers() - self._dead):
             self._dead = frozenset()
-        return not self._dead and bool(self._client.server_is_ready())
+        if now > self._there_until and self._client.server_is_ready():
+            self._there_until = now + STAYS
+        return not self._dead and now <= self._there_until
 
     def left(self) -> bool:
         """Whether every server that could have taken the last goal is gone; a successor does not know the goal."""
-        return not self.ready() or (bool(self._taken_by) and not self._taken_by & self._servers())
+        now = monotonic()
+        if now > self._stays_until and self.ready() and (not self._taken_by or self._taken_by & self._servers()):
+            self._stays_until = now + STAYS
+        return bool(self._dead) or now > self._stays_until
 
     def mark_alive(self) -> None:
         """Note that the server was not dead, only frozen for a while."""
@@ -174,7 +179,7 @@ class Peer(Generic[G, R, F]):
             goal_id = UUID(uuid=list(call.id))
             future = self._client.send_goal_async(goal, feedback_callback=call.received, goal_uuid=goal_id)
             future.add_done_callback(lambda done: call.answered(done.result()))
-            self._taken_by = self._servers()  # after sending, as it takes a while
+            self._taken_by, self._stays_until = self._servers(), float("-inf")  # after sending, as it takes a while
 
         self._loop.on_executor(send)
         return call
@@ -186,6 +191,7 @@ class Peer(Generic[G, R, F]):
         successor serves would get lost, so `ready` waits for a server that is not one of the old ones.
         """
         self._dead, self._dead_until = self._taken_by, monotonic() + DISCOVERY_LEASE
+        self._stays_until = float("-inf")
         self._loop.on_executor(self._end_open)
 
     def _end_open(self) -> None:

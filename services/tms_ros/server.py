@@ -128,17 +128,13 @@ class ActionServers:
         )  # fmt: skip
 
     def _accepted(
-        self,
-        action_type: ActionType[G, R, F],
-        run: Callable[[Goal[G, F]], Ended[R]],
-        handle: ServerGoalHandle,
-        name: str,
+        self, kind: ActionType[G, R, F], run: Callable[[Goal[G, F]], Ended[R]], handle: ServerGoalHandle, name: str
     ) -> None:
-        goal = Goal(handle, action_type)
+        goal = Goal(handle, kind)
         self._goals[name, goal.uuid] = goal
         if self._leaving:  # it began to leave after the decision
             goal.cancel()
-        threading.Thread(target=self._work, args=(action_type, run, goal, name), name=name, daemon=True).start()
+        threading.Thread(target=self._work, args=(kind, run, goal, name), name=name, daemon=True).start()
 
     def _cancel(self, name: str, handle: ServerGoalHandle) -> CancelResponse:
         goal = self._goals.get((name, bytes(handle.goal_id.uuid)))
