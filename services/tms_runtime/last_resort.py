@@ -30,12 +30,7 @@ class _Event(ctypes.Structure):
 class _Time(ctypes.Structure):
     """`struct itimerspec`; without an interval, the timer expires once."""
 
-    _fields_ = (
-        ("interval_s", ctypes.c_long),
-        ("interval_ns", ctypes.c_long),
-        ("seconds", ctypes.c_long),
-        ("nanoseconds", ctypes.c_long),
-    )
+    _fields_ = tuple((name, ctypes.c_long) for name in ("interval_s", "interval_ns", "seconds", "nanoseconds"))
 
 
 def end_after(seconds: float, code: int) -> None:

@@ -11,9 +11,8 @@ from std_msgs.msg import Bool, String
 from std_srvs.srv import Trigger
 
 from conftest import wait_until
-from tms_if.on_executor import do
 from tms_ros.node import Ros
-from tms_runtime.graph import Graph, mismatches, peer_counts
+from tms_runtime.graph import Graph, counts_of, mismatches
 
 pytestmark = pytest.mark.ros
 LIMIT = 20.0  # s for whatever must happen at all
@@ -24,17 +23,18 @@ class Watched:
     """The looks of one process at the graph, and what it told."""
 
     def __init__(self, ros: Ros, caplog: pytest.LogCaptureFixture) -> None:
-        self._ros, self._caplog = ros, caplog
+        self._caplog = caplog
         caplog.set_level(logging.WARNING)
         self._graph = Graph(ros, structlog.stdlib.get_logger("test"))
 
     def reported(self) -> list[str]:
-        do(self._ros, self._graph.check, LIMIT)
+        self._graph.check()
         return [record.getMessage() for record in self._caplog.records if record.name == "test"]
 
 
 @pytest.fixture
-def watched(two_nodes: tuple[Ros, Ros], caplog: pytest.LogCaptureFixture) -> Watched:
+def watched(two_nodes: tuple[Ros, Ros], caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch) -> Watched:
+    monkeypatch.setattr(two_nodes[0], "poll_in_thread", lambda *_: None)  # it looks when it is told to
     return Watched(two_nodes[0], caplog)
 
 
@@ -60,7 +60,7 @@ def test_a_publisher_that_nobody_can_hear_is_told_once(two_nodes: tuple[Ros, Ros
     text = f"topic='{ACTED}', reader='/server', writer='/client', problem='Best effort publisher and reliable"
     wait_until(lambda: any(text in line for line in watched.reported()), LIMIT, "told")
     foreign.publisher(Bool, ACTED)  # one that fits: the topic is looked at again
-    wait_until(lambda: peer_counts(here)[ACTED] == (2, 1), LIMIT, "seen")
+    wait_until(lambda: counts_of(here, ACTED) == (2, 1), LIMIT, "seen")
     wait_until(lambda: mismatches(here, ACTED) is not None, LIMIT, "known by name")
     assert len(watched.reported()) == 1
 
