@@ -16,7 +16,7 @@ from tms_ros.node import Ros
 from tms_runtime import leases
 from tms_runtime.pulse import Pulse
 
-BEATS = 2  # beats of the pulse from one assertion to the next: each assertion wakes every process of the machine
+AGAIN = 0.09  # s to the next assertion: at every second beat, as each wakes all of a machine, and at each that is late
 
 
 def topic(machine: str, process: str) -> str:
@@ -31,8 +31,7 @@ class Permit:
         self, ros: Ros, pulse: Pulse, machine: str, process: str, alive: Callable[[], bool] = lambda: True
     ) -> None:
         """`alive` is called at every beat: whether the process still does its work."""
-        self._ros, self._pulse, self._process, self._alive = ros, pulse, process, alive
-        self._beats = 0
+        self._ros, self._pulse, self._process, self._alive, self._asserted = ros, pulse, process, alive, 0.0
         self._publisher = ros.lease_publisher(Message, topic(machine, process), LEASE)
 
     def hold(self, goal: bytes, holder: str = "") -> None:
@@ -50,8 +49,9 @@ class Permit:
         self._ros.node.destroy_publisher(self._publisher)
 
     def _beat(self) -> None:
-        self._beats += 1
-        if self._beats % BEATS == 0 and self._pulse.works() and self._alive():
+        now = monotonic()
+        if now - self._asserted > AGAIN and self._pulse.works() and self._alive():
+            self._asserted = now
             self._publisher.assert_liveliness()
 
 

@@ -7,9 +7,9 @@ import socket
 from prometheus_client import Gauge
 from tms_msg_rc.msg import GatewayClaim
 
-from tms_config.clock import sleep
+from tms_config.clock import monotonic, sleep
 from tms_decision.permit_link import LEASE
-from tms_machine.permit import BEATS
+from tms_machine.permit import AGAIN
 from tms_rc.reasons import Rival
 from tms_reason.reason import Reason
 from tms_runtime import leases
@@ -27,7 +27,7 @@ class Claim:
         self._app, self._id, self._serving = app, secrets.token_hex(8), False
         self._where = f"pid {os.getpid()} on {socket.gethostname()}"
         self._others: dict[str, GatewayClaim] = {}
-        self._alive, self._beats = 1, 0
+        self._alive, self._asserted = 1, 0.0
         GATEWAYS.set(1)
         topic = f"/{app.machine}/rc/claim"
         self._publisher = app.ros.lease_publisher(GatewayClaim, topic, LEASE)
@@ -69,8 +69,9 @@ class Claim:
         self._publisher.publish(GatewayClaim(id=self._id, serving=self._serving, where=self._where))
 
     def _beat(self) -> None:
-        self._beats += 1
-        if self._beats % BEATS == 0:
+        now = monotonic()
+        if now - self._asserted > AGAIN:
+            self._asserted = now
             self._publisher.assert_liveliness()
 
     def _on_claim(self, claim: GatewayClaim) -> None:

@@ -1,13 +1,14 @@
 """What a watcher makes of the news of a lease; DDS itself is replaced."""
 
 from collections.abc import Callable
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
 from tms_msg_rc.msg import Permit as Message
 
 from tms_decision.permit_link import GRACE
-from tms_machine.permit import RemotePermit, watch_server
+from tms_machine.permit import Permit, RemotePermit, watch_server
 from tms_runtime import leases
 
 GOAL = [7] * 16
@@ -136,3 +137,44 @@ def test_a_process_that_ends_between_two_goals_loses_none(dds: Dds, server: Serv
     server.reported.clear()
     dds.alive(0, 1)
     assert not server.reported
+
+
+class Lease:
+    """A process with a permit, and when it asserted that [s]; the beats come when they are told to."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.now, self.asserted, self.working = 100.0, list[float](), True
+        monkeypatch.setattr("tms_machine.permit.monotonic", lambda: self.now)
+        publisher = SimpleNamespace(
+            publish=lambda _: None, assert_liveliness=lambda: self.asserted.append(round(self.now - 100.0, 3))
+        )
+        ros: Any = SimpleNamespace(lease_publisher=lambda *_: publisher)
+        pulse: Any = SimpleNamespace(add=self._add, works=lambda: self.working)
+        Permit(ros, pulse, "zx200", "ts").hold(bytes(16))
+
+    def _add(self, beat: Callable[[], None]) -> None:
+        self._beat = beat
+
+    def beats(self, *after: float) -> list[float]:
+        """Beat so many seconds after the last beat, each time; when it asserted."""
+        for seconds in after:
+            self.now += seconds
+            self._beat()
+        return self.asserted
+
+
+def test_a_permit_is_asserted_at_every_second_beat(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert Lease(monkeypatch).beats(*6 * [0.0502]) == [0.05, 0.151, 0.251]
+
+
+def test_a_permit_is_asserted_at_each_beat_that_is_late(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Two beats in a row that a busy PC has run 0.25 s late would else be the end of its lease of 0.5 s."""
+    assert Lease(monkeypatch).beats(0.05, 0.3, 0.3, 0.05, 0.05) == [0.05, 0.35, 0.65, 0.75]
+
+
+def test_a_permit_is_not_asserted_while_the_process_does_not_work(monkeypatch: pytest.MonkeyPatch) -> None:
+    lease = Lease(monkeypatch)
+    lease.working = False
+    assert lease.beats(0.05, 0.3) == []
+    lease.working = True
+    assert lease.beats(0.05) == [0.4]
