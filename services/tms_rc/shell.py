@@ -80,9 +80,12 @@ class Shell:
     # beats
 
     def _pulse(self) -> None:
-        """Beat here while nothing is under way: to wake the executor thread costs ten times as much."""
+        """Beat here while no goal waits to be sent: to wake the executor thread costs ten times as much.
+
+        Goals are sent by that thread only, so one that a beat sent here could leave after a stop that came meanwhile.
+        """
         with self._lock:
-            if not self._gateway.at_work():
+            if not self._gateway.may_send():
                 self._beat()
                 return
         self._app.ros.on_executor(self._beat)

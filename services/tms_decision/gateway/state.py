@@ -212,9 +212,9 @@ class Gateway:
         """Which source of the machine is silent."""
         return self.watch.silent(now, FRESH)
 
-    def at_work(self) -> bool:
-        """Whether a goal, a stop or the start is under way."""
-        return bool(self.waiting or self.active or self.stops) or not self.recovery.over
+    def may_send(self) -> bool:
+        """Whether a goal waits to be sent, or the start is under way."""
+        return bool(self.waiting) or not self.recovery.over or (self.active is not None and not self.active.sent)
 
     def proves(self) -> bool:
         """Whether a stop waits for its proof."""

@@ -436,11 +436,31 @@ def test_a_run_that_reports_itself_before_the_servers_are_reached_is_stopped_onc
     assert rig.gateway.recovery.reached and rig.gateway.numbered == 1
 
 
-def test_what_is_under_way() -> None:
+def test_a_stop_is_proven_faster() -> None:
     rig = ready()
-    assert not rig.gateway.at_work() and not rig.gateway.proves()
+    assert not rig.gateway.proves()
     rig.happens(e.StopAsked(1, None, True))
-    assert rig.gateway.at_work() and rig.gateway.proves()
+    assert rig.gateway.proves()
+
+
+def test_a_beat_may_send_a_goal_only_until_it_is_sent() -> None:
+    """Other beats need not be on the thread that sends goals."""
+    rig = ready()
+    assert not rig.gateway.may_send()
+    rig.plant.fault.mute = True
+    rig.run(1.5).ask(1)
+    rig.run(0.2)
+    assert rig.gateway.may_send() and not rig.all(f.Send)
+    rig.plant.fault.mute = False
+    rig.run(1.0)
+    assert rig.all(f.Send) and not rig.gateway.may_send()
+
+
+def test_a_beat_may_send_a_goal_while_a_gateway_starts() -> None:
+    rig = Rig()
+    rig.look = replace(rig.look, reachable=False)
+    rig.run(0.2)
+    assert rig.gateway.may_send()
 
 
 def test_a_machine_that_moves_while_a_receipt_waits_for_the_disk_is_stopped() -> None:
