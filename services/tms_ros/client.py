@@ -25,7 +25,7 @@ from tms_ros.quality import SERVICE
 from tms_ros.reasons import NoServer
 
 UNKNOWN_GOAL = 2  # action_msgs/CancelGoal: the server does not know the goal, so it was restarted
-STAYS = 0.25  # s for which a server counts as there after a look, which goes through the whole graph of the site
+STAYS = 0.5  # s for which a server counts as there after a look, which goes through the whole graph of the site
 DISCOVERY_LEASE = 6.0  # s after which discovery itself has dropped a dead process (5 s in our DDS profile)
 
 

@@ -1,7 +1,7 @@
 """A process's part of the ROS graph: how many endpoints it is connected to, and which it cannot connect to.
 
-Each question goes through the whole graph of the site: all of a scheduler take 110 ms at thirty machines. They have a
-thread of their own, since a press of the stop would wait for them on the executor.
+Each question goes through the whole graph of the site: all of a scheduler take 110 ms at thirty machines. So they are
+asked one by one and only after a change, in a thread of their own: on the executor, a press of the stop would wait.
 """
 
 from contextlib import suppress
@@ -10,17 +10,17 @@ from typing import Any
 
 from rclpy.exceptions import InvalidHandle
 
-from tms_config.clock import sleep
+from tms_config.clock import monotonic, sleep
 from tms_ros.node import Ros
 from tms_ros.quality import misfit
 from tms_runtime import metrics
 from tms_runtime.log import Logger
 from tms_runtime.reasons import NotConnected
 
-GRAPH_CHECK_PERIOD = 10.0  # s between checks
+LOOK_PERIOD, CHECK_PERIOD = 5.0, 60.0  # s between looks for other nodes, and at most until the next check
 UNKNOWN = "_NODE_NAME_UNKNOWN_"  # of an endpoint that was discovered a moment before its node
 RCLPYS_OWN = "/parameter_events"
-TOPICS, PAUSE = 10, 0.02  # so many topics in a row, and s until the next ones, in which others have the interpreter
+PAUSE = 0.04  # s between two topics: ten gateways that start together must not fill the PC
 
 
 class Graph:
@@ -33,32 +33,32 @@ class Graph:
         ros.begin(self._run, "graph")
 
     def _run(self) -> None:
+        known, checked = set[str](), monotonic()
         while not self._ros.closing:
-            sleep(GRAPH_CHECK_PERIOD)  # first: a process that has just started is not connected to all others yet
-            self.check()
+            sleep(LOOK_PERIOD)  # first: a process that has just started is not connected to all others yet
+            with suppress(InvalidHandle):  # of what was destroyed meanwhile: the next look sees what is there
+                names = set(self._ros.node.get_node_names())
+                if names != known or monotonic() - checked > CHECK_PERIOD:
+                    self.check()
+                    known, checked = names, monotonic()
 
     def check(self) -> None:
         """Check every topic of this process once; from one thread only."""
         node, unknown = self._ros.node, (0, 0)
-        with suppress(InvalidHandle):  # an end was destroyed meanwhile: the next check looks at what is there then
-            topics = {end.topic_name for end in [*node.publishers, *node.subscriptions]} - {RCLPYS_OWN}
-            for number, topic in enumerate(sorted(topics), 1):
-                self._check(topic)
-                if number % TOPICS == 0:
-                    sleep(PAUSE)
-            readers = sum(end.get_subscription_count() for end in list(node.publishers))
-            writers = sum(self._counts.get(end.topic_name, unknown)[0] for end in list(node.subscriptions))
-            metrics.ENDPOINTS.labels("readers").set(readers)
-            metrics.ENDPOINTS.labels("writers").set(writers)
-            metrics.NODES.set(len(node.get_node_names()))
+        topics = {end.topic_name for end in [*node.publishers, *node.subscriptions]} - {RCLPYS_OWN}
+        for topic in sorted(topics):
+            self._check(topic)
+            sleep(PAUSE)
+        readers = sum(end.get_subscription_count() for end in list(node.publishers))
+        writers = sum(self._counts.get(end.topic_name, unknown)[0] for end in list(node.subscriptions))
+        metrics.ENDPOINTS.labels("readers").set(readers)
+        metrics.ENDPOINTS.labels("writers").set(writers)
+        metrics.NODES.set(len(node.get_node_names()))
 
     def _check(self, topic: str) -> None:
         counts = counts_of(self._ros, topic)
-        if counts == self._counts.get(topic):
-            return
-        found = mismatches(self._ros, topic)
-        if found is None:  # looked at again by the next check
-            return
+        if counts == self._counts.get(topic) or (found := mismatches(self._ros, topic)) is None:
+            return  # nothing new, or a name that is not known yet: the next check looks again
         for reason in sorted(found - self._reported.get(topic, set()), key=repr):
             self._log.warning("not_connected", reason=reason)
         self._counts[topic], self._reported[topic] = counts, found
