@@ -8,9 +8,8 @@ from contextlib import suppress
 from itertools import product
 from typing import Any
 
-from rclpy.exceptions import InvalidHandle
-
 from tms_config.clock import monotonic, sleep
+from tms_ros.loop import InvalidHandle
 from tms_ros.node import Ros
 from tms_ros.quality import misfit
 from tms_runtime import metrics
