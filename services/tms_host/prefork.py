@@ -21,7 +21,7 @@ from typing import NoReturn
 
 import pydantic
 import setproctitle
-from supervisor.options import ServerOptions
+from supervisor.options import ProcessConfig, ServerOptions
 from supervisor.supervisord import go
 
 from tms_host.supervisor import AT_ONCE
@@ -66,6 +66,10 @@ class Options(ServerOptions):  # type: ignore[misc]
         super().__init__()
         self.loaded: dict[str, tuple[int, int]] = {}  # see `sources`; empty before `load`
 
+    def programs(self) -> list[ProcessConfig]:
+        """What supervisord knows of each program."""
+        return [one for group in self.process_group_configs for one in group.process_configs]
+
     def fork(self) -> int:
         self.parent = os.getpid()
         if self.unloaded:
@@ -77,7 +81,7 @@ class Options(ServerOptions):  # type: ignore[misc]
     def _load(self) -> None:
         """Load what is forked, while a program that shares nothing of it starts on another processor."""
         try:
-            load(one.command.split()[-1] for group in self.process_group_configs for one in group.process_configs)
+            load(one.command.split()[-1] for one in self.programs())
         except ImportError as error:
             self.logger.critical(f"a library of all programs cannot be loaded: {error}")
             raise
@@ -172,8 +176,7 @@ def main() -> None:
     """Run supervisord with the arguments of the command line."""
     options = Options()
     options.realize(doc=__doc__)
-    programs = [one for group in options.process_group_configs for one in group.process_configs]
-    options.unloaded = sum(one.priority == AT_ONCE and one.autostart for one in programs)
+    options.unloaded = sum(one.priority == AT_ONCE and one.autostart for one in options.programs())
     options.first, options.test = True, False
     go(options)
 

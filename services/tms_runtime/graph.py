@@ -32,11 +32,12 @@ class Graph:
         ros.begin(self._run, "graph")
 
     def _run(self) -> None:
-        known, checked = set[str](), monotonic()
+        known, checked = list[str](), monotonic()
         while not self._ros.closing:
             sleep(LOOK_PERIOD)  # first: a process that has just started is not connected to all others yet
             with suppress(InvalidHandle):  # of what was destroyed meanwhile: the next look sees what is there
-                names = set(self._ros.node.get_node_names())
+                names = sorted(self._ros.node.get_node_names())
+                metrics.NODES.set(len(names))
                 if names != known or monotonic() - checked > CHECK_PERIOD:
                     self.check()
                     known, checked = names, monotonic()
@@ -52,7 +53,6 @@ class Graph:
         writers = sum(self._counts.get(end.topic_name, unknown)[0] for end in list(node.subscriptions))
         metrics.ENDPOINTS.labels("readers").set(readers)
         metrics.ENDPOINTS.labels("writers").set(writers)
-        metrics.NODES.set(len(node.get_node_names()))
 
     def _check(self, topic: str) -> None:
         counts = counts_of(self._ros, topic)

@@ -34,7 +34,7 @@ class Watched:
 
 @pytest.fixture
 def watched(two_nodes: tuple[Ros, Ros], caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch) -> Watched:
-    monkeypatch.setattr(two_nodes[0], "poll_in_thread", lambda *_: None)  # it looks when it is told to
+    monkeypatch.setattr(two_nodes[0], "begin", lambda *_: None)  # it looks when it is told to
     return Watched(two_nodes[0], caplog)
 
 

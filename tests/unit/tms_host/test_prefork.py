@@ -105,61 +105,52 @@ def test_a_program_is_executed_once_a_loaded_module_has_changed(run, change: str
     assert "FileNotFoundError" in done.stderr  # no such file: an exec was tried
 
 
-def supervisord(folder: Path, go: str) -> str:
-    """What supervisord of a store and a gateway prints, if `go` is what it does once it knows its programs."""
+SUPERVISORD = """
+import os, sys
+from tms_host import prefork
+
+def fork(own):
+    if own.fork() == 0:
+        os._exit(0)
+
+def go(own):
+{does}
+
+prefork.go = go
+prefork.main()
+"""
+
+
+def supervisord(folder: Path, does: str) -> str:
+    """What supervisord of a store and a gateway prints, if this is what it does once it knows its programs."""
     conf = folder / "supervisord.conf"
     programs = "".join(
         f"[program:{name.partition(':')[2]}]\ncommand=python -m tms_runtime.run {name}\npriority={priority}\n"
         for name, priority in (("zx200:rc", 999), ("tms:store", AT_ONCE))
     )
     conf.write_text(f"[supervisord]\nlogfile={folder}/log\n{programs}")
-    code = f"import os, sys\nfrom tms_host import prefork\n{textwrap.dedent(go)}\nprefork.go = go\nprefork.main()"
+    code = SUPERVISORD.format(does=textwrap.indent(textwrap.dedent(does), "    "))
     words = [sys.executable, "-c", code, "-c", str(conf)]
     return subprocess.run(words, capture_output=True, text=True, timeout=60, check=True).stdout
 
 
-FORKS = """
-    def fork(own):
-        if own.fork() == 0:
-            os._exit(0)
-    """
-
-
 def test_supervisord_knows_the_files_of_the_modules_that_it_has_loaded(tmp_path: Path) -> None:
-    printed = supervisord(
-        tmp_path,
-        FORKS
-        + """
-    def go(own):
-        fork(own)
-        fork(own)
-        print(*own.loaded, sep="\\n")
-    """,
-    )
+    printed = supervisord(tmp_path, "fork(own)\nfork(own)\nprint(*own.loaded, sep='\\n')")
     loaded = {str(Path(file).relative_to(PROJECT / "services")) for file in printed.splitlines()}
     assert {"tms_runtime/run.py", "tms_ros/node.py", "tms_kit/subtask_server.py", "tms_rc/reasons.py"} <= loaded
 
 
 def test_the_store_starts_while_the_libraries_of_the_others_are_loaded(tmp_path: Path) -> None:
-    printed = supervisord(
-        tmp_path,
-        FORKS
-        + """
-    def go(own):
+    does = """
         for _ in range(3):
             fork(own)
             print(bool(own.loaded), "tms_kit.subtask_server" in sys.modules)
-    """,
-    )
-    assert printed == "False False\nTrue True\nTrue True\n"
+        """
+    assert supervisord(tmp_path, does) == "False False\nTrue True\nTrue True\n"
 
 
 def test_a_library_of_all_that_is_missing_is_in_the_log_of_supervisord(tmp_path: Path) -> None:
-    printed = supervisord(
-        tmp_path,
-        FORKS
-        + """
-    def go(own):
+    does = """
         own.make_logger()
         prefork.LIBRARIES = ("no_such_library",)
         fork(own)
@@ -167,13 +158,10 @@ def test_a_library_of_all_that_is_missing_is_in_the_log_of_supervisord(tmp_path:
             fork(own)
         except ImportError:
             print("ends")
-    """,
-    )
-    assert printed == "ends\n"
-    assert (
-        "a library of all programs cannot be loaded: No module named 'no_such_library'"
-        in (tmp_path / "log").read_text()
-    )
+        """
+    assert supervisord(tmp_path, does) == "ends\n"
+    told = "a library of all programs cannot be loaded: No module named 'no_such_library'"
+    assert told in (tmp_path / "log").read_text()
 
 
 def test_what_only_some_processes_run_is_not_shared() -> None:
