@@ -45,6 +45,8 @@ class Silhouette:
         self._axis, beyond = _swinging(model)
         self._links = Links(model, beyond)
         self._corners = {link: box_corners(model.shapes[link]) for link in beyond}
+        whole = (*self._fixed, _circle(0.0, 0.0, self._reach))
+        self.most = max(float(np.hypot(*part.corners.T).max()) for part in whole)  # m from the base, in any pose
 
     def body(self, joints: Sequence[Mapping[str, float]]) -> Body:
         """What holds it at all of these joints [rad]; at a joint that is not told it may be anywhere."""

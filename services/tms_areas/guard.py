@@ -40,10 +40,13 @@ class Guard:
         unsure, motion = seen.unsure, seen.motion
         if motion is None or (tracks and unsure is not None):
             return Verdict(hold=unsure)
+        more = 0.0 if unsure is None else UNSURE
+        if self.law.clear(motion, self._silhouette.most, more, tracks):
+            return Verdict()
         body = self.body(joints)
         if tracks:
             return Verdict(stop=self.law.driving(body, motion))
-        wrong = self.law.working(body, motion, 0.0 if unsure is None else UNSURE)
+        wrong = self.law.working(body, motion, more)
         return Verdict(stop=wrong) if unsure is None or wrong is None else Verdict(hold=unsure)
 
     def pace(self, seen: Seen, joints: Mapping[str, float]) -> float:

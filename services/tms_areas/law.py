@@ -26,6 +26,7 @@ from tms_areas.reach import (
     Place,
     Reach,
     between,
+    bulge,
     covered_by,
     ends,
     nearest,
@@ -76,6 +77,21 @@ class Law:
             shapely.prepare(shape)
 
     # while it moves
+
+    def clear(self, motion: Motion, most: float, more: float, tracks: bool) -> bool:
+        """Whether it may go on whatever its joints, as no border is near: the usual case, for a tenth of a full look.
+
+        `most`: how far its farthest point is from its base in any pose [m]; `more`: as in `working`; `tracks`: it
+        drives. The circle holds all that `working` or `driving` would look at.
+        """
+        still = Reach(0.0, 0.0, 0.0, 0.0, 0.0, motion.off + more)
+        reach = self._reach(motion) if tracks else still
+        way = math.hypot(max(abs(reach.back), abs(reach.ahead)), reach.side)
+        radius = way + most * (1.0 + bulge((reach.left - reach.right) / 4)) + reach.around
+        if not shapely.contains_xy(self._usable, motion.x, motion.y):
+            return False
+        near = [self._border, *self._limited]
+        return not shapely.dwithin(near, shapely.Point(motion.x, motion.y), radius).any()
 
     def driving(self, body: Body, motion: Motion) -> Reason | None:
         """Why tracks must stop now; None if they may go on until the next look."""

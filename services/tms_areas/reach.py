@@ -101,8 +101,12 @@ def covered_by(body: Body, places: Array, between: float, around: float) -> Cove
     part_of = np.repeat(np.arange(len(body.parts)), [len(part.corners) for part in body.parts])
     corners = np.stack([x.T.ravel(), y.T.ravel()], axis=1)  # by corner of a part, then by place
     shapes = shapely.convex_hull(shapely.linestrings(corners, indices=np.repeat(part_of, len(places))))
-    bulge = 1.0 - math.cos(min(between, math.pi))
-    return Covered(shapes, np.array([around + part.spin * bulge for part in body.parts]))
+    return Covered(shapes, np.array([around + part.spin * bulge(between) for part in body.parts]))
+
+
+def bulge(between: float) -> float:
+    """How far an arc is outside of straight lines between headings that are `between` [rad] off, in its radii."""
+    return 1.0 - math.cos(min(between, math.pi))
 
 
 def nearest(line: BaseGeometry, shape: BaseGeometry) -> tuple[float, float, float]:

@@ -42,6 +42,8 @@ class MachineMonitor:
             (name, app.ros.sample_arrivals(_type(name, border), topic, DEPTH), self._reader(name))
             for name, topic in self._topics.items()
         ]
+        by_topic = {reader.topic_name: reader for reader in app.ros.node.subscriptions}
+        self._readers = {name: by_topic[topic] for name, topic in self._topics.items()}
         self._counted = 0.0  # monotonic
 
     def samples(self) -> list[Event]:
@@ -61,7 +63,7 @@ class MachineMonitor:
     def _count(self, name: str) -> list[Event]:
         """Find other publishers of a source. The machine's own one, if killed, counts until discovery drops it."""
         known, topic = self._watch.sources[name].publishers, self._topics[name]
-        count = int(self._app.ros.node.count_publishers(topic))
+        count = int(self._readers[name].get_publisher_count())  # of those it hears, without a walk through the graph
         if len(known) == count or (count < 2 and not known):
             return []
         nodes = () if count < 2 else tuple(node for node, _ in _publishers(self._app.ros, topic))

@@ -120,7 +120,8 @@ class Peer(Generic[G, R, F]):
         self._open: list[Call[R, F]] = []  # used on the executor thread only
         self._taken_by: frozenset[bytes] = frozenset()  # servers that could have taken the last goal
         self._dead_until = 0.0
-        self._there_until = self._stays_until = float("-inf")  # monotonic [s], see STAYS
+        self._found: frozenset[bytes] = frozenset()  # servers at the last look; empty unless they were connected
+        self._there_until = float("-inf")  # monotonic [s], see STAYS
         self._dead: frozenset[bytes] = frozenset()  # servers that are known to be gone, before discovery drops them
         self._client = SureActionClient(
             loop.node, action_type, name, callback_group=loop.group, goal_service_qos_profile=SERVICE,
@@ -132,16 +133,15 @@ class Peer(Generic[G, R, F]):
         now = monotonic()
         if self._dead and (now > self._dead_until or self._servers() - self._dead):
             self._dead = frozenset()
-        if now > self._there_until and self._client.server_is_ready():
-            self._there_until = now + STAYS
+        if now > self._there_until:
+            found = self._servers()  # of these once connected, no more is asked: rcl takes eight such looks
+            there = found and (found == self._found or self._client.server_is_ready())
+            self._found, self._there_until = (found, now + STAYS) if there else (frozenset(), float("-inf"))
         return not self._dead and now <= self._there_until
 
     def left(self) -> bool:
         """Whether every server that could have taken the last goal is gone; a successor does not know the goal."""
-        now = monotonic()
-        if now > self._stays_until and self.ready() and (not self._taken_by or self._taken_by & self._servers()):
-            self._stays_until = now + STAYS
-        return bool(self._dead) or now > self._stays_until
+        return not self.ready() or bool(self._taken_by and not self._taken_by & self._found)
 
     def mark_alive(self) -> None:
         """Note that the server was not dead, only frozen for a while."""
@@ -179,7 +179,7 @@ class Peer(Generic[G, R, F]):
             goal_id = UUID(uuid=list(call.id))
             future = self._client.send_goal_async(goal, feedback_callback=call.received, goal_uuid=goal_id)
             future.add_done_callback(lambda done: call.answered(done.result()))
-            self._taken_by, self._stays_until = self._servers(), float("-inf")  # after sending, as it takes a while
+            self._taken_by, self._there_until = self._servers(), float("-inf")  # after sending, as it takes a while
 
         self._loop.on_executor(send)
         return call
@@ -191,7 +191,7 @@ class Peer(Generic[G, R, F]):
         successor serves would get lost, so `ready` waits for a server that is not one of the old ones.
         """
         self._dead, self._dead_until = self._taken_by, monotonic() + DISCOVERY_LEASE
-        self._stays_until = float("-inf")
+        self._there_until = float("-inf")
         self._loop.on_executor(self._end_open)
 
     def _end_open(self) -> None:

@@ -37,7 +37,8 @@ class Outline(Silhouette):
     """A machine whose joints stand still."""
 
     def __init__(self, corners: Array) -> None:
-        self._whole = Body((Part(corners, float(np.hypot(*corners.T).max())),))
+        self.most = float(np.hypot(*corners.T).max())
+        self._whole = Body((Part(corners, self.most),))
 
     def body(self, joints: object) -> Body:
         return self._whole

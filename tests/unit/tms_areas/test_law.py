@@ -1,6 +1,7 @@
 """What areas mean for a machine: figures that can be worked out by hand."""
 
 import math
+import random
 from pathlib import Path
 
 import numpy as np
@@ -213,6 +214,32 @@ def test_an_arm_that_stretches_needs_more_room_also_on_its_way() -> None:
 def test_a_joint_that_is_not_told_may_be_anywhere() -> None:
     silhouette = Silhouette(MODELS["zx200"])
     assert extent(silhouette.body([{"swing_joint": 0.0}])) > 9.0
+
+
+def body_of(name: str, r: random.Random) -> Body:
+    """A model at any joints, or a small square, whose way is longer than itself."""
+    if name == "square":
+        return SQUARE
+    return Silhouette(MODELS[name]).body([{joint: r.uniform(-math.pi, math.pi) for joint in MODELS[name].joints}])
+
+
+@pytest.mark.parametrize("tracks", [True, False])
+@pytest.mark.parametrize("name", ["ic120", "zx200", "square"])
+def test_where_no_border_is_near_a_full_look_finds_nothing_either(name: str, tracks: bool) -> None:
+    r, known = random.Random(1), MODELS.get(name)
+    most = extent(SQUARE) if known is None else Silhouette(known).most
+    yard = Area("yard", "unmanned", ((-40, -40), (40, -40), (40, 40), (-40, 40)))
+    limits = Law(AreaSet((yard, HUT, SLOW)), name, TRACKS if known is None else tracks_of(known, known.borders["sim"]))
+    clear = found = 0
+    for _ in range(1500):
+        place = r.uniform(-45, 45), r.uniform(-45, 45), r.uniform(-math.pi, math.pi)
+        motion = Motion(*place, r.uniform(-1.5, 1.5), r.uniform(-0.3, 0.3), r.uniform(-0.4, 0.4), 0.1, 0.05)
+        body, more = body_of(name, r), r.choice([0.0, 0.5])
+        wrong = limits.driving(body, motion) if tracks else limits.working(body, motion, more)
+        near = not limits.clear(motion, most, more, tracks)
+        assert near or wrong is None, motion
+        clear, found = clear + (not near), found + (wrong is not None)
+    assert clear > 100 and found > 100
 
 
 # the watch

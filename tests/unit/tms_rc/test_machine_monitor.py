@@ -82,12 +82,12 @@ class Ros:
         self.waiting: list[Any] = []
         self.voices = ["driver"]
         self.node = self
+        self.subscriptions: list[Any] = []
 
-    def sample_arrivals(self, _kind: Any, _topic: str, _depth: int) -> Any:
+    def sample_arrivals(self, _kind: Any, topic: str, _depth: int) -> Any:
+        heard = SimpleNamespace(topic_name=topic, get_publisher_count=lambda: len(self.voices))
+        self.subscriptions.append(heard)
         return lambda: [self.waiting.pop(0) for _ in list(self.waiting)]
-
-    def count_publishers(self, _topic: str) -> int:
-        return len(self.voices)
 
     def get_publishers_info_by_topic(self, _topic: str) -> list[Any]:
         kind = "sensor_msgs/msg/JointState"

@@ -71,9 +71,35 @@ def test_a_server_that_was_seen_is_not_looked_for_at_each_beat(site: Site) -> No
 def test_a_server_that_leaves_is_missed_soon(site: Site) -> None:
     site.send()
     assert site.peer.ready() and not site.peer.left()
-    site.connected = False
+    site.servers = set()
     site.now += 1.01 * STAYS
     assert not site.peer.ready() and site.peer.left()
+
+
+def test_a_look_for_the_same_server_asks_for_no_more_than_its_name(site: Site) -> None:
+    assert site.peer.ready()
+    site.looks, site.connected = 0, False  # not asked
+    site.now += 1.01 * STAYS
+    assert site.peer.ready() and site.looks == 1
+
+
+@pytest.mark.parametrize("back", [OLD, NEW])  # frozen until discovery dropped it, or started again
+def test_a_server_that_is_back_has_to_be_connected_again(site: Site, back: bytes) -> None:
+    assert site.peer.ready()
+    site.servers = set()
+    site.now += 1.01 * STAYS
+    assert not site.peer.ready()
+    site.servers, site.connected = {back}, False
+    assert not site.peer.ready()
+    site.connected = True
+    assert site.peer.ready()
+
+
+def test_another_server_of_the_name_has_to_be_connected(site: Site) -> None:
+    assert site.peer.ready()
+    site.servers, site.connected = {NEW}, False
+    site.now += 1.01 * STAYS
+    assert not site.peer.ready()
 
 
 def test_a_server_that_comes_is_there_at_once(site: Site) -> None:
