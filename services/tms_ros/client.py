@@ -119,9 +119,8 @@ class Peer(Generic[G, R, F]):
         self._loop, self.name = loop, name
         self._open: list[Call[R, F]] = []  # used on the executor thread only
         self._taken_by: frozenset[bytes] = frozenset()  # servers that could have taken the last goal
-        self._dead_until = 0.0
         self._found: frozenset[bytes] = frozenset()  # servers at the last look; empty unless they were connected
-        self._there_until = float("-inf")  # monotonic [s], see STAYS
+        self._dead_until = self._there_until = float("-inf")  # monotonic [s], see STAYS
         self._dead: frozenset[bytes] = frozenset()  # servers that are known to be gone, before discovery drops them
         self._client = SureActionClient(
             loop.node, action_type, name, callback_group=loop.group, goal_service_qos_profile=SERVICE,

@@ -59,9 +59,8 @@ class KeepingExecutor(SingleThreadedExecutor):  # type: ignore[misc]
     def _run_tasks(self) -> bool:
         """Go on with all tasks; whether one that waits may wait for one that has ended."""
         with self._tasks_lock:
-            tasks = [*self._unfinished, *(task for task, _, _ in self._tasks)]
+            tasks, self._unfinished = [*self._unfinished, *(task for task, _, _ in self._tasks)], []
             self._tasks.clear()
-        self._unfinished = []
         for task in tasks:
             self._run(task)
         return 0 < len(self._unfinished) < len(tasks)
@@ -104,21 +103,22 @@ class _WaitSet:
         held.enter_context(context)
         self._set = rclpy_implementation.WaitSet(*(getattr(counts, part) for part in counts.__slots__), context)
         self._adds = [(self._set.add_guard_condition, guard.handle)]
-        for kind, entities in self._entities.items():
-            self._adds += [(getattr(self._set, f"add_{kind}"), one.handle) for one in entities.values()]
+        for kind in {*KINDS} - {"client"}:
+            self._adds += [(getattr(self._set, f"add_{kind}"), one.handle) for one in self._entities[kind].values()]
 
     def ready(self, longest: int) -> Iterator[tuple[str, Any]]:
         """Wait for at most `longest` [ns], or until the executor is woken; what is ready, with its kind."""
         self._set.clear_entities()
         for add, handle in self._adds:
             add(handle)
+        for one in self._entities["client"].values():
+            if one._pending_requests:  # a large scheduler has hundreds of clients, each 5 us of every wake-up
+                self._set.add_client(one.handle)
         for one in self._waitables:
             with suppress(InvalidHandle):  # destroyed meanwhile
                 one.add_to_wait_set(self._set)
         self._set.wait(longest)
-        for one in self._waitables:
-            if one.is_ready(self._set):
-                yield "waitable", one
+        yield from (("waitable", one) for one in self._waitables if one.is_ready(self._set))
         for kind, entities in self._entities.items():
             for pointer in self._set.get_ready_entities(kind):
                 one = entities.get(pointer)  # None: it belongs to an action

@@ -82,6 +82,17 @@ class SureActionClient(ActionClient):  # type: ignore[misc]
     def __init__(self, *args: Any, **settings: Any) -> None:
         super().__init__(*args, **settings)
         self._known_by_status: set[int] = set()  # goal requests whose answer may still come
+        self._due = False  # whether an answer may come
+
+    def add_to_wait_set(self, wait_set: Any) -> None:
+        """Wait while an answer is due only, as the executor does for services."""
+        self._due = bool(self._pending_goal_requests or self._pending_cancel_requests or self._pending_result_requests)
+        if self._due:
+            super().add_to_wait_set(wait_set)
+
+    def is_ready(self, wait_set: Any) -> bool:
+        """Whether something is there to take."""
+        return self._due and bool(super().is_ready(wait_set))
 
     def take_data(self) -> dict[str, Any]:
         """Take the waiting data, with all feedback."""
@@ -112,8 +123,9 @@ class SureActionClient(ActionClient):  # type: ignore[misc]
                 await super().execute({"goal": (number, answer)})
 
     def forget(self, goal_id: bytes) -> None:
-        """Drop the callback of a goal that has ended; rclpy itself drops only those of goals with a result."""
-        self._feedback_callbacks.pop(goal_id, None)
+        """Drop what is kept of a goal that has ended; rclpy itself waits for its result, and then for its status."""
+        for kept in (self._feedback_callbacks, self._goal_handles):
+            kept.pop(goal_id, None)
 
     def handle_of(self, goal_id: bytes) -> ClientGoalHandle:
         """A handle for a goal without an answer, to ask the server whether it has the goal after all."""

@@ -123,8 +123,7 @@ class ActionServers:
             handle_accepted_callback=lambda handle: self._accepted(action_type, run, handle, name),
             cancel_callback=lambda handle: self._cancel(name, handle), result_timeout=RESULT_KEPT,
             callback_group=self._loop.group,
-            goal_service_qos_profile=SERVICE, result_service_qos_profile=SERVICE,
-            cancel_service_qos_profile=SERVICE,
+            goal_service_qos_profile=SERVICE, result_service_qos_profile=SERVICE, cancel_service_qos_profile=SERVICE,
         )  # fmt: skip
 
     def _accepted(

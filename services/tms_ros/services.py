@@ -91,12 +91,12 @@ class Services:
             RosError: NoServer or NoAnswer within `seconds`, or ProcessLost.
         """
         assert not self._loop.is_current(), "blocking call on the executor thread"
-        client = self._service(service_type, name)
-        deadline = monotonic() + seconds
+        client, deadline = self._service(service_type, name), monotonic() + seconds
         self._loop.wait_for(client.service_is_ready, seconds, NoServer(process_of(name), name, seconds))
         done = threading.Event()
         future = client.call_async(request)
         future.add_done_callback(lambda _: done.set())
+        self._loop.on_executor(lambda: None)  # so that it waits for this answer, too
         while not done.wait(min(SERVER_CHECK_PERIOD, max(0.0, deadline - monotonic()))):
             if lost() or monotonic() >= deadline:
                 client.remove_pending_request(future)
@@ -143,9 +143,8 @@ class Services:
             RosError: BadServiceName.
         """
         client = self._service(service_type, name)
-        settled = self._loop.create_future()
+        settled, sent = self._loop.create_future(), list[Future]()
         deadline = monotonic() + seconds
-        sent: list[Future] = []
 
         def poll() -> None:
             if not sent and client.service_is_ready():

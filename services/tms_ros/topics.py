@@ -6,6 +6,7 @@ those of each topic cost every wake-up 10 us, three quarters of its time. `tms_r
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import islice
 from typing import Any, Generic
 
 from rclpy.callback_groups import CallbackGroup
@@ -112,10 +113,7 @@ class Topics:
         reader = self._subscribed(message_type, topic, lambda _: None, qos, Asleep())
 
         def take_new() -> list[Arrival[M]]:
-            found: list[Arrival[M]] = []
-            while len(found) < depth and (taken := take(reader)) is not None:
-                found.append(Arrival(*taken))
-            return found
+            return [Arrival(*taken) for taken in islice(iter(lambda: take(reader), None), depth)]
 
         return take_new
 

@@ -8,9 +8,11 @@ from typing import Any
 import pytest
 from std_msgs.msg import String
 from std_srvs.srv import Trigger
+from tms_msg_ts.action import LeafNodeBase
 
 from conftest import wait_until
 from tms_ros import executor
+from tms_ros.goals import Outcome
 from tms_ros.node import Ros
 
 pytestmark = pytest.mark.ros
@@ -72,6 +74,25 @@ def test_the_wait_set_is_kept_while_no_entity_comes_or_goes(
     assert made == []
     node.publisher(String, "/kept/new")
     wait_until(lambda: len(made) > 0, LIMIT, "a new one")
+
+
+def test_what_others_hear_of_an_action_wakes_no_client_that_waits_for_nothing(
+    node: Ros, two_nodes: tuple[Ros, Ros]
+) -> None:
+    _, there = two_nodes
+    there.serve(LeafNodeBase, "/idle/turn", lambda _: (Outcome.SUCCEEDED, LeafNodeBase.Result(result=True)))
+    peer, other = node.peer(LeafNodeBase, "/idle/turn"), there.peer(LeafNodeBase, "/idle/turn")
+    for one in (peer, other):
+        one.wait_ready(LIMIT)
+        call = one.send(LeafNodeBase.Goal())
+        assert call.wait_for(lambda call=call: call.outcome is Outcome.SUCCEEDED, LIMIT)  # type: ignore[misc]
+    wait_until(lambda: node.busy_since() is None, LIMIT, "the round of the last answer is over")
+    found = rounds(node)
+    for one in (other, other, peer):
+        if one is peer:
+            assert found == []
+        call = one.send(LeafNodeBase.Goal())
+        assert call.wait_for(lambda call=call: call.outcome is Outcome.SUCCEEDED, LIMIT)  # type: ignore[misc]
 
 
 def test_what_a_callback_of_the_same_round_has_ended_is_not_executed(node: Ros, two_nodes: tuple[Ros, Ros]) -> None:

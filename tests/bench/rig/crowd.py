@@ -25,7 +25,9 @@ from tms_ros.goals import Ended, Outcome
 from tms_ros.node import Ros
 from tms_ros.server import Goal
 from tms_runtime import environment
+from tms_runtime.priority import come_first, threads
 from tms_runtime.pulse import Pulse
+from tms_runtime.run import OF_A_MACHINE
 
 STATE_PERIOD = 0.2  # s, as gateways tell their states
 WORK = 10.0  # s that a goal takes
@@ -94,6 +96,8 @@ def main(name: str, subtasks: str, *names: str) -> None:
 
     ros.node.create_subscription(Bool, "/emergency_signal", on_press, 1, callback_group=ros.loop.group)
     ros.every(STATE_PERIOD, news)
+    nice, realtime = OF_A_MACHINE  # as their subtasks have; a gateway has more
+    come_first(nice, threads(), realtime)
     print("ready", flush=True)
     threading.Event().wait()
 

@@ -28,6 +28,7 @@ from tms_config.models import Border
 from tms_machine.border import motions
 from tms_machine.frames import MAP
 from tms_machine.permit import Permit
+from tms_reason import wire
 from tms_ros.client import Call
 from tms_ros.goals import Ended, Outcome
 from tms_ros.node import Ros
@@ -90,6 +91,8 @@ class Machine:
             call = self._send(goal, motion)  # not everybody had found everybody yet
         if call.outcome is Outcome.SUCCEEDED:
             return Outcome.SUCCEEDED, LeafNodeBase.Result(result=True)
+        if (why := wire.of(getattr(call.result, "error_string", ""))) is not None:
+            goal.say(why)
         return Outcome.CANCELED if goal.cancelled.is_set() else Outcome.ABORTED, LeafNodeBase.Result()
 
     def _send(self, goal: Goal, motion: FollowJointTrajectory.Goal) -> Call:
