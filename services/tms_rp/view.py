@@ -83,7 +83,7 @@ class View:
     def check(self, made: Trajectory) -> None:
         """Check a whole trajectory.
 
-        What touches at its start may part, but must be apart at its end; only into the ground it may lead.
+        What touches at its start may part, but must be apart at its end; only into the ground it may lead, at its end.
 
         Raises:
             SubtaskFailed: Collision, with the two bodies, the time, and where they overlap most.
@@ -99,10 +99,10 @@ class View:
         since = _run(contacts)
         bad = contacts & ~since
         bad[-1] = contacts[-1]
+        for pair in np.flatnonzero(contacts[0]):
+            bad[: since[:, pair].sum(), pair] |= self._nearer(poses[since[:, pair]], int(pair))
         soil = np.array([isinstance(self._bodies[b].name, Ground) for _, b in self._pairs])
         bad[:, soil] &= ~_run(contacts[::-1])[::-1][:, soil]
-        for pair in np.flatnonzero(contacts[0] & ~soil):
-            bad[: since[:, pair].sum(), pair] |= self._nearer(poses[since[:, pair]], int(pair))
         return bad
 
     def _nearer(self, poses: Array, pair: int) -> Mask:

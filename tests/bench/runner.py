@@ -29,6 +29,7 @@ HERE = Path(__file__).resolve().parent
 PROJECT = HERE.parents[1]
 HISTORY = PROJECT / ".state/bench/history.jsonl"
 BROKEN = (AssertionError, OSError, subprocess.SubprocessError, TmsError)  # what a group breaks off with; others go on
+TURNS = 10
 COLUMNS = ("GROUP", "FIGURE", "VALUE", "FLOOR", "RATIO", "ALLOWED", "")
 
 
@@ -66,14 +67,16 @@ class Figure:
         return {key: float(f"{value:.4g}") if isinstance(value, float) else value for key, value in found.items()}
 
 
-def milliseconds(work: Callable[[], object], rounds: int) -> float:
-    """The median of several rounds."""
-    times = []
-    for _ in range(rounds):
-        start = time.perf_counter()
-        work()
-        times.append(time.perf_counter() - start)
-    return sorted(times)[rounds // 2] * 1000
+def milliseconds(*works: Callable[[], object], rounds: int) -> list[float]:
+    """The median of several rounds of each; by turns, as a PC may become slower meanwhile."""
+    times: list[list[float]] = [[] for _ in works]
+    for _ in range(TURNS):
+        for work, found in zip(works, times, strict=True):
+            for _ in range(rounds // TURNS):
+                start = time.perf_counter()
+                work()
+                found.append(time.perf_counter() - start)
+    return [sorted(found)[len(found) // 2] * 1000 for found in times]
 
 
 def groups() -> list[str]:

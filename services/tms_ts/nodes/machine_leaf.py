@@ -19,6 +19,7 @@ from tms_ts.bt.status import FAILURE, RUNNING, SUCCESS, Status
 from tms_ts.tree_reasons import NameMissing, NoMachines, NoRosName, Sending, Working
 from tms_ts.world import Goal
 
+OPEN = [state for state in GoalState if not state.final]  # a tick of a thousand nodes asks a hundred times
 # Names that ROS accepts: a topic may have 247 letters, including the machine's name and the endings of an action.
 ROS_NAME = re.compile(r"(?!.{201})[A-Za-z_][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*", re.ASCII)
 
@@ -26,13 +27,24 @@ ROS_NAME = re.compile(r"(?!.{201})[A-Za-z_][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*
 class MachineLeaf(PlainAction):
     """A leaf that sends goals to the action `<model_name>/<what the subtask's port names>`."""
 
-    __slots__ = ("goal",)
+    __slots__ = ("_told", "goal")
     subtask_port: ClassVar[str] = ""
     record_ports: ClassVar[tuple[str, ...]] = ("record_name",)  # the first one that is not empty counts
     model_name: In[str]
 
     def prepare(self) -> None:
         self.goal: Goal | None = None
+
+    @property
+    def reason(self) -> Reason | None:
+        """Why it is RUNNING or has failed. An open goal is asked only now: few leaves of a tick are read."""
+        if (goal := self.goal) is None:
+            return self._told
+        return goal.reason or goal.feedback or (Sending() if goal.state is GoalState.SENDING else Working())
+
+    @reason.setter
+    def reason(self, why: Reason | None) -> None:
+        self._told = why
 
     def record(self) -> str | None:
         """The record of a goal that begins now, with the goal's inputs; None fails the leaf, whose reason is set."""
@@ -47,27 +59,25 @@ class MachineLeaf(PlainAction):
         return self.reported("model_name"), self.reported(self.subtask_port), self.record_reported()
 
     def tick(self) -> Status:
-        return self.start() if self.goal is None else self.progress(self.goal)
+        if (goal := self.goal or self.start()) is None:
+            return FAILURE
+        state = goal.state
+        if state in OPEN:
+            return RUNNING
+        self.goal, self.reason = None, goal.reason
+        return SUCCESS if state is GoalState.SUCCEEDED else FAILURE
 
-    def start(self) -> Status:
+    def start(self) -> Goal | None:
+        """Send the goal; None without a record, whose reason is set."""
         machine, subtask, record = self.model_name, self.require(self.subtask_port), self.record()
         if not subtask:
             raise TickError(NameMissing(self.registration_name, self.subtask_port))
         if record is None:
-            return FAILURE
+            return None
         if self.context.world is None:
             raise TickError(NoMachines(self.registration_name))
         self.goal = self.context.world.machines.send(machine, subtask, record, self.path)
-        return self.progress(self.goal)
-
-    def progress(self, goal: Goal) -> Status:
-        state = goal.state
-        if not state.final:
-            self.reason = goal.reason or goal.feedback or (Working() if state is GoalState.RUNNING else Sending())
-            return RUNNING
-        self.reason = goal.reason
-        self.goal = None
-        return SUCCESS if state is GoalState.SUCCEEDED else FAILURE
+        return self.goal
 
     def halt(self) -> None:
         goal, self.goal = self.goal, None
