@@ -88,10 +88,10 @@ class Law:
         reach = self._reach(motion) if tracks else still
         way = math.hypot(max(abs(reach.back), abs(reach.ahead)), reach.side)
         radius = way + most * (1.0 + bulge((reach.left - reach.right) / 4)) + reach.around
-        if not shapely.contains_xy(self._usable, motion.x, motion.y):
+        here = shapely.Point(motion.x, motion.y)
+        if not self._usable.contains(here) or shapely.dwithin(self._border, here, radius):
             return False
-        near = [self._border, *self._limited]
-        return not shapely.dwithin(near, shapely.Point(motion.x, motion.y), radius).any()
+        return not (tracks and shapely.dwithin(self._limited, here, radius).any())
 
     def driving(self, body: Body, motion: Motion) -> Reason | None:
         """Why tracks must stop now; None if they may go on until the next look."""
