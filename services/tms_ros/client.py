@@ -140,7 +140,8 @@ class Peer(Generic[G, R, F]):
 
     def left(self) -> bool:
         """Whether every server that could have taken the last goal is gone; a successor does not know the goal."""
-        return not self.ready() or bool(self._taken_by and not self._taken_by & self._found)
+        taken = self._taken_by  # that it is not there is looked for anew: only good news counts for a while
+        return not self.ready() or bool(taken and not taken & self._found and not taken & self._servers())
 
     def mark_alive(self) -> None:
         """Note that the server was not dead, only frozen for a while."""

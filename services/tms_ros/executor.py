@@ -103,8 +103,9 @@ class _WaitSet:
         held.enter_context(context)
         self._set = rclpy_implementation.WaitSet(*(getattr(counts, part) for part in counts.__slots__), context)
         self._adds = [(self._set.add_guard_condition, guard.handle)]
-        for kind in {*KINDS} - {"client"}:
-            self._adds += [(getattr(self._set, f"add_{kind}"), one.handle) for one in self._entities[kind].values()]
+        for kind, entities in self._entities.items():
+            if kind != "client":  # see `ready`
+                self._adds += [(getattr(self._set, f"add_{kind}"), one.handle) for one in entities.values()]
 
     def ready(self, longest: int) -> Iterator[tuple[str, Any]]:
         """Wait for at most `longest` [ns], or until the executor is woken; what is ready, with its kind."""

@@ -111,11 +111,7 @@ class Topics:
         """As `sample`, with each message's reception time and number; `best_effort`: lost ones are not sent again."""
         qos = quality.topic(depth, False, best_effort)
         reader = self._subscribed(message_type, topic, lambda _: None, qos, Asleep())
-
-        def take_new() -> list[Arrival[M]]:
-            return [Arrival(*taken) for taken in islice(iter(lambda: take(reader), None), depth)]
-
-        return take_new
+        return lambda: [Arrival(*taken) for taken in islice(iter(lambda: take(reader), None), depth)]
 
     def subscribe_raw(
         self, message_type: type[Message], topic: str, on_message: Callable[[bytes], None], qos: QoSProfile
