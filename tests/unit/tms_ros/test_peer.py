@@ -124,3 +124,10 @@ def test_the_goal_of_a_dead_server_stays_lost_once_its_successor_is_there(site: 
     site.peer.mark_lost()
     site.servers = {NEW}
     assert site.peer.ready() and site.peer.left()
+
+
+def test_the_goal_of_a_server_that_came_since_the_last_look_is_not_lost(site: Site) -> None:
+    assert site.peer.ready()
+    site.servers = {NEW}
+    site.send()
+    assert not site.peer.left()
