@@ -40,20 +40,21 @@ class Silhouette:
     """Makes bodies of one model."""
 
     def __init__(self, model: MachineModel) -> None:
-        self._joints, self._reach = tuple(model.joints), reach(model)
+        self._joints = tuple(model.joints)
         self._fixed = tuple(_part(np.array(corners)) for corners in from_above(model).values())
         self._axis, beyond = _swinging(model)
         self._links = Links(model, beyond)
         self._corners = {link: box_corners(model.shapes[link]) for link in beyond}
-        whole = (*self._fixed, _circle(0.0, 0.0, self._reach))
-        self.most = max(float(np.hypot(*part.corners.T).max()) for part in whole)  # m from the base, in any pose
+        whole = _circle(0.0, 0.0, reach(model))
+        self._anywhere = Body((*self._fixed, whole))
+        self.most = max(part.spin for part in (*self._fixed, _part(whole.corners)))  # m from the base, in any pose
 
     def body(self, joints: Sequence[Mapping[str, float]]) -> Body:
         """What holds it at all of these joints [rad]; at a joint that is not told it may be anywhere."""
         if not self._corners:
             return Body(self._fixed)
         if not joints or any(name not in pose for pose in joints for name in self._joints):
-            return Body((*self._fixed, _circle(0.0, 0.0, self._reach)))
+            return self._anywhere
         poses = np.array([[pose[name] for name in self._joints] for pose in joints])
         places = self._links.places(poses)
         at = [(places[link] @ corners)[:, :2].transpose(0, 2, 1) for link, corners in self._corners.items()]

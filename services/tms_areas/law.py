@@ -84,8 +84,7 @@ class Law:
         `most`: how far its farthest point is from its base in any pose [m]; `more`: as in `working`; `tracks`: it
         drives. The circle holds all that `working` or `driving` would look at.
         """
-        still = Reach(0.0, 0.0, 0.0, 0.0, 0.0, motion.off + more)
-        reach = self._reach(motion) if tracks else still
+        reach = self._reach(motion) if tracks else Reach(0.0, 0.0, 0.0, 0.0, 0.0, motion.off + more)
         way = math.hypot(max(abs(reach.back), abs(reach.ahead)), reach.side)
         radius = way + most * (1.0 + bulge((reach.left - reach.right) / 4)) + reach.around
         here = shapely.Point(motion.x, motion.y)

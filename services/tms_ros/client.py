@@ -179,7 +179,7 @@ class Peer(Generic[G, R, F]):
             goal_id = UUID(uuid=list(call.id))
             future = self._client.send_goal_async(goal, feedback_callback=call.received, goal_uuid=goal_id)
             future.add_done_callback(lambda done: call.answered(done.result()))
-            self._taken_by, self._there_until = self._servers(), float("-inf")  # after sending, as it takes a while
+            self._taken_by = self._servers()  # after sending, as it takes a while
 
         self._loop.on_executor(send)
         return call

@@ -64,7 +64,7 @@ class MachineLeaf(PlainAction):
         state = goal.state
         if state in OPEN:
             return RUNNING
-        self.goal, self.reason = None, goal.reason
+        self.reason, self.goal = goal.reason, None
         return SUCCESS if state is GoalState.SUCCEEDED else FAILURE
 
     def start(self) -> Goal | None:

@@ -37,6 +37,7 @@ from tms_runtime import environment
 from tms_runtime.fence import derived
 from tms_runtime.priority import come_first, threads
 from tms_runtime.pulse import Pulse
+from tms_runtime.run import OF_A_MACHINE
 
 WORK = 10  # s that a motion takes
 POSE = {"swing_joint": 0.0, "boom_joint": -0.8, "arm_joint": 1.8, "bucket_joint": 0.5, "bucket_end_joint": 0.0}  # rad
@@ -45,7 +46,6 @@ AGAIN = 0.5  # s between tries of a goal that was refused
 APART = 20.0  # m between two machines
 LIMIT = 60.0  # s for a motion to end
 HURRY = -10  # nice value: machines have PCs of their own
-REALTIME = 1  # priority of a real subtask as well, see tms_runtime.run
 
 
 class Machine:
@@ -126,7 +126,8 @@ def main(name: str, subtasks: str, *names: str) -> None:
         places.publish(TFMessage(transforms=[machine.tell() for machine in machines]))
 
     ros.every(STATE_PERIOD, news)
-    come_first(HURRY, threads(), REALTIME)
+    _, realtime = OF_A_MACHINE
+    come_first(HURRY, threads(), realtime)
     print("ready", flush=True)
     threading.Event().wait()
 
