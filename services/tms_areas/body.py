@@ -19,6 +19,7 @@ SIDES = 32  # of a polygon around a circle: at most half a percent larger
 FINEST = 0.05  # rad between two looks at an arm on its way: in between it reaches millimetres further at most
 
 Array = NDArray[np.float64]
+ROUND: Array = np.array(around_circle(0.0, 0.0, 1.0, SIDES))
 
 
 @dataclass(frozen=True)
@@ -112,4 +113,4 @@ def _part(corners: Array) -> Part:
 
 
 def _circle(x: float, y: float, radius: float) -> Part:
-    return Part(np.array(around_circle(x, y, radius, SIDES)), math.hypot(x, y))
+    return Part(ROUND * radius + (x, y), math.hypot(x, y))

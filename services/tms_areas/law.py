@@ -30,9 +30,9 @@ from tms_areas.reach import (
     covered_by,
     ends,
     nearest,
+    parts_of,
     place_of,
     places_of,
-    shape_of,
 )
 from tms_areas.reasons import EntersArea, LeavesArea, NoWay, TooFastFor
 from tms_reason.reason import Reason
@@ -94,14 +94,18 @@ class Law:
 
     def driving(self, body: Body, motion: Motion) -> Reason | None:
         """Why tracks must stop now; None if they may go on until the next look."""
-        reach, covered = self._reach(motion), self.until_it_stands(body, motion)
+        reach = self._reach(motion)
+        covered = self._passed(body, motion, reach)
         wrong = self._outside(covered, body, motion, reach.most)
         return wrong if wrong is not None else self._too_fast(covered, math.hypot(motion.vx, motion.vy))
 
     def until_it_stands(self, body: Body, motion: Motion) -> Covered:
         """All that a machine on tracks may cover until a stop that is commanded at the next look has worked."""
-        reach = self._reach(motion)
-        return covered_by(body, places_of(motion, reach), (reach.left - reach.right) / 4, reach.around)
+        return self._passed(body, motion, self._reach(motion))
+
+    @staticmethod
+    def _passed(body: Body, motion: Motion, reach: Reach, more: float = 0.0) -> Covered:
+        return covered_by(body, places_of(motion, reach), (reach.left - reach.right) / 4, reach.around + more)
 
     @staticmethod
     def now(body: Body, motion: Motion) -> Covered:
@@ -117,7 +121,7 @@ class Law:
         """How fast tracks may go [m/s]: as a speed limit says that is nearer than they need to slow down."""
         if not self.paces:
             return math.inf
-        near = shapely.dwithin(self._limited, shape_of(body, motion), self._slowing)
+        near = shapely.dwithin(self._limited, parts_of(body, motion), self._slowing)
         return min((HEEDED * (one.speed or 0.0) for one, slow in zip(self._limits, near, strict=True) if slow),
                    default=math.inf)  # fmt: skip
 
@@ -169,7 +173,7 @@ class Law:
         return speed, turn / way * speed
 
     def _planned(self, body: Body, motion: Motion, reach: Reach) -> Reason | None:
-        covered = covered_by(body, places_of(motion, reach), (reach.left - reach.right) / 4, reach.around + SPARE)
+        covered = self._passed(body, motion, reach, SPARE)
         return self._outside(covered, body, motion, reach.most) or self._slow(covered)
 
     def apart(self, here: Place, there: Place) -> Reason | None:
@@ -249,7 +253,7 @@ class Law:
 
     def _why(self, shape: BaseGeometry, around: float, body: Body, motion: Motion, needed: float) -> Reason:
         """Which area is the next one that it must not enter, or leave; where, how far, and how far it needs."""
-        now = shape_of(body, motion)
+        now = parts_of(body, motion)
         entered = self._closed_tree.query(shape, predicate="dwithin", distance=around)
         if len(entered):
             gaps = shapely.distance(self._closed_tree.geometries[entered], now)
@@ -259,7 +263,8 @@ class Law:
         gap, x, y = nearest(self._sides[self._tree.query_nearest(now, all_matches=False)[0]], now)
         at = shapely.Point(x, y)
         left = min(self.areas.of("unmanned"), key=lambda area: float(shapely.distance(area.polygon, at)))
-        return LeavesArea(self.machine, left.id, gap if self._usable.contains(now) else 0.0, needed, x, y)
+        inside = shapely.contains(self._usable, now.geoms).all()
+        return LeavesArea(self.machine, left.id, gap if inside else 0.0, needed, x, y)
 
     def _too_fast(self, covered: Covered, speed: float) -> Reason | None:
         """The speed limit that a machine breaks where it is, or may soon be."""

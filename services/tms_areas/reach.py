@@ -77,6 +77,12 @@ def shape_of(body: Body, motion: Motion) -> BaseGeometry:
     return shapely.union_all(covered_by(body, place_of(motion), 0.0, 0.0).shapes)
 
 
+def parts_of(body: Body, motion: Motion) -> shapely.GeometryCollection:
+    """What its parts cover where it is; that is as far from others as `shape_of`, which takes longer to make."""
+    corners, part_of = _corners(body, place_of(motion))
+    return shapely.geometrycollections(shapely.polygons(shapely.linearrings(corners, indices=part_of)))
+
+
 def place_of(motion: Motion) -> Array:
     """Where the base is, as one of several places (1 x 3)."""
     return np.array([[motion.x, motion.y, motion.yaw]])
@@ -95,13 +101,18 @@ def places_of(motion: Motion, reach: Reach) -> Array:
 
 def covered_by(body: Body, places: Array, between: float, around: float) -> Covered:
     """What each part covers at places (N x 3), between them, and at headings that are `between` [rad] off."""
+    corners, part_of = _corners(body, places)
+    shapes = shapely.convex_hull(shapely.linestrings(corners, indices=part_of))
+    return Covered(shapes, np.array([around + part.spin * bulge(between) for part in body.parts]))
+
+
+def _corners(body: Body, places: Array) -> tuple[Array, NDArray[np.int64]]:
+    """The corners of all parts at places (N x 3), by corner of a part and then by place; of which part each is."""
     c, s = np.cos(places[:, 2, None]), np.sin(places[:, 2, None])
     px, py = np.concatenate([part.corners for part in body.parts]).T
     x, y = places[:, 0, None] + c * px - s * py, places[:, 1, None] + s * px + c * py
-    part_of = np.repeat(np.arange(len(body.parts)), [len(part.corners) for part in body.parts])
-    corners = np.stack([x.T.ravel(), y.T.ravel()], axis=1)  # by corner of a part, then by place
-    shapes = shapely.convex_hull(shapely.linestrings(corners, indices=np.repeat(part_of, len(places))))
-    return Covered(shapes, np.array([around + part.spin * bulge(between) for part in body.parts]))
+    part_of = np.repeat(np.arange(len(body.parts)), [len(part.corners) * len(places) for part in body.parts])
+    return np.stack([x.T.ravel(), y.T.ravel()], axis=1), part_of
 
 
 def bulge(between: float) -> float:

@@ -3,6 +3,7 @@
 import re
 from collections import Counter
 from collections.abc import Collection
+from functools import cache
 from pathlib import Path
 
 from lxml import etree
@@ -55,11 +56,15 @@ def essence(text: str) -> str:
 
 def main_model(text: str, models: Collection[str]) -> str:
     """The model word that is most frequent in the text, the first one of equals; "" if there is none."""
-    longest_first = sorted(models, key=len, reverse=True)
-    if not longest_first:
+    if not models:
         return ""
-    found = Counter(re.findall("|".join(map(re.escape, longest_first)), text))
+    found = Counter(_any_of(frozenset(models)).findall(text))
     return found.most_common(1)[0][0] if found else ""  # most_common keeps first-seen order among equals
+
+
+@cache
+def _any_of(words: frozenset[str]) -> re.Pattern[str]:
+    return re.compile("|".join(map(re.escape, sorted(words, key=len, reverse=True))))
 
 
 def _line(element: etree._Element) -> int:

@@ -153,11 +153,7 @@ class Peer(Generic[G, R, F]):
         return frozenset(bytes(info.endpoint_gid) for info in found)
 
     def wait_ready(self, seconds: float) -> None:
-        """Block until the server is there.
-
-        Raises:
-            RosError: it did not come.
-        """
+        """Block until the server is there; raises RosError when it does not come."""
         self._loop.wait_for(self.ready, seconds, NoServer(process_of(self.name), self.name, seconds))
 
     def send(
@@ -176,8 +172,7 @@ class Peer(Generic[G, R, F]):
                 if other.outcome is not None:
                     self._client.forget(other.id)
             self._open = [other for other in self._open if other.outcome is None] + [call]
-            goal_id = UUID(uuid=list(call.id))
-            future = self._client.send_goal_async(goal, feedback_callback=call.received, goal_uuid=goal_id)
+            future = self._client.send_goal_async(goal, call.received, UUID(uuid=list(call.id)))
             future.add_done_callback(lambda done: call.answered(done.result()))
             self._taken_by = self._servers()  # after sending, as it takes a while
 

@@ -34,16 +34,13 @@ class Ros:
         self.every, self.after, self.poll_in_thread, self.now = loop.every, loop.after, loop.poll_in_thread, loop.now
         self.begin, self.on_stop, self.leave = loop.begin, loop.on_stop, loop.leave
         self.busy_since, self.thread_number, self.wait_for = loop.busy_since, loop.thread_number, loop.wait_for
-
         self.publisher, self.subscribe, self.subscribe_raw = topics.publisher, topics.subscribe, topics.subscribe_raw
         self.delivered, self.sample, self.sample_arrivals = topics.delivered, topics.sample, topics.sample_arrivals
         self.lease_publisher, self.lease_subscribe = topics.lease_publisher, topics.lease_subscribe
-
         self.offer, self.offer_slow, self.prepare = services.offer, services.offer_slow, services.prepare
         self.call, self.call_async = services.call, services.call_async
         self.call_then, self.call_now = services.call_then, services.call_now
         self.call_unanswered, self.has_service = services.call_unanswered, services.has_service
-
         self.serve = self._served.serve
 
     @property

@@ -40,7 +40,13 @@ def send_surely(service: Any, later: Later) -> None:
         for one in shown if not dropped or left == 1 else ():
             warnings.warn_explicit(one.message, one.category, one.filename, one.lineno)
 
-    service.send_response = lambda response, header: None if response is None else attempt(response, header, ATTEMPTS)
+    def respond(response: Any, header: Any) -> None:
+        if callable(response):  # it gets what sends the answer later: a coroutine would run at each wake-up till then
+            response(lambda filled: respond(filled, header))
+        elif response is not None:
+            attempt(response, header, ATTEMPTS)
+
+    service.send_response = respond
 
 
 def take(subscription: Any) -> tuple[Any, float, int] | None:

@@ -133,7 +133,7 @@ class ActionServers:
         self._goals[name, goal.uuid] = goal
         if self._leaving:  # it began to leave after the decision
             goal.cancel()
-        threading.Thread(target=self._work, args=(kind, run, goal, name), name=name, daemon=True).start()
+        self._loop.in_thread(lambda: self._work(kind, run, goal, name))
 
     def _cancel(self, name: str, handle: ServerGoalHandle) -> CancelResponse:
         goal = self._goals.get((name, bytes(handle.goal_id.uuid)))

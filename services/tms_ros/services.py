@@ -5,7 +5,6 @@ from collections.abc import Awaitable, Callable
 from typing import Any
 
 from rclpy.exceptions import NameValidationException
-from rclpy.task import Future
 
 from tms_config.clock import monotonic
 from tms_config.naming import process_of
@@ -42,24 +41,22 @@ class Services:
     def offer_slow(
         self, service_type: ServiceType[Req, Res], name: str, handler: Callable[[Req, Res], Res | None]
     ) -> Any:
-        """Serve a service whose handler may block: each call runs in a thread of its own; None sends no answer."""
+        """Serve a service whose handler may block: each call has a thread; None sends no answer."""
 
-        async def answer(request: Req, response: Res) -> Any:
-            done = self._loop.create_future()
+        def work(request: Req, send: Callable[[Res | None], None]) -> None:
+            filled: Res | None = _failed(service_type.Response(), self._loop.process)
+            try:
+                filled = handler(request, service_type.Response())
+            finally:  # a bug is logged by the thread; the caller still gets an answer
+                self._loop.on_executor(lambda: send(filled))
 
-            def work() -> None:
-                filled: Res | None = _failed(response, self._loop.process)
-                try:
-                    filled = handler(request, service_type.Response())
-                finally:  # a bug is logged by the thread; the caller still gets an answer
-                    self._loop.on_executor(lambda: done.set_result(filled))
-
-            threading.Thread(target=work, name=name, daemon=True).start()
-            return await done
+        def answer(request: Req, _: Res) -> Any:
+            return lambda send: self._loop.in_thread(lambda: work(request, send))
 
         return self.offer(service_type, name, answer)
 
-    def _service(self, service_type: ServiceType[Req, Res], name: str) -> Any:
+    def prepare(self, service_type: ServiceType[Req, Res], name: str) -> Any:
+        """The client of a service. Made early, a later urgent request need not wait for discovery."""
         key = (service_type, name)
         with self._making:
             if key not in self._clients:
@@ -70,10 +67,6 @@ class Services:
                 except NameValidationException as error:
                     raise RosError(BadServiceName(name, str(error).partition("\n")[0])) from error
             return self._clients[key]
-
-    def prepare(self, service_type: ServiceType[Req, Res], name: str) -> None:
-        """Make the client of a service now, so that a later urgent request need not wait for discovery."""
-        self._service(service_type, name)
 
     def call(
         self,
@@ -91,7 +84,7 @@ class Services:
             RosError: NoServer or NoAnswer within `seconds`, or ProcessLost.
         """
         assert not self._loop.is_current(), "blocking call on the executor thread"
-        client, deadline = self._service(service_type, name), monotonic() + seconds
+        client, deadline = self.prepare(service_type, name), monotonic() + seconds
         self._loop.wait_for(client.service_is_ready, seconds, NoServer(process_of(name), name, seconds))
         done = threading.Event()
         future = client.call_async(request)
@@ -108,11 +101,11 @@ class Services:
 
     def has_service(self, service_type: ServiceType[Req, Res], name: str) -> bool:
         """Whether a service exists now."""
-        return bool(self._service(service_type, name).service_is_ready())
+        return bool(self.prepare(service_type, name).service_is_ready())
 
     def call_unanswered(self, service_type: ServiceType[Req, Res], name: str, request: Req) -> None:
         """Send a service request without waiting for its answer, which may never come."""
-        client = self._service(service_type, name)
+        client = self.prepare(service_type, name)
         self._loop.on_executor(lambda: client.remove_pending_request(client.call_async(request)))
 
     def call_then(
@@ -129,7 +122,7 @@ class Services:
 
         `answered` is called on the executor thread, where this must be called, too. Returns how to drop the request.
         """
-        client = self._service(service_type, name)
+        client = self.prepare(service_type, name)
         future = client.call_async(request)
         future.add_done_callback(lambda done: answered(done.result()))
         return lambda: client.remove_pending_request(future)
@@ -142,30 +135,18 @@ class Services:
         Raises:
             RosError: BadServiceName.
         """
-        client = self._service(service_type, name)
-        settled, sent = self._loop.create_future(), list[Future]()
-        deadline = monotonic() + seconds
-
-        def poll() -> None:
-            if not sent and client.service_is_ready():
-                sent.append(client.call_async(request))
-                sent[0].add_done_callback(lambda future: settle(future.result()))
-            elif monotonic() >= deadline:
-                settle(None)
-
-        def settle(value: Res | None) -> None:
-            if not settled.done():
-                settled.set_result(value)
-
-        poll()
-        timer = self._loop.every(seconds if sent else POLL, poll)
+        client, deadline = self.prepare(service_type, name), monotonic() + seconds
+        while not client.service_is_ready():
+            if monotonic() >= deadline:
+                return None
+            await self._loop.pause(POLL)
+        answer = client.call_async(request)
+        timer = self._loop.every(max(POLL, deadline - monotonic()), lambda: answer.done() or answer.set_result(None))
         try:
-            answer: Res | None = await settled
-            return answer
+            found: Res | None = await answer
+            return found
         finally:
             self._loop.node.destroy_timer(timer)
-            if sent and not sent[0].done():
-                client.remove_pending_request(sent[0])
 
 
 def _failed(response: Any, process: str) -> Any:

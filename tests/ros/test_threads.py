@@ -2,10 +2,12 @@
 
 import os
 import threading
+import weakref
 from collections.abc import Awaitable, Callable
 from functools import partial
 
 import pytest
+from structlog.contextvars import bind_contextvars, get_contextvars
 
 from conftest import wait_until
 from tms_config.clock import monotonic
@@ -114,3 +116,54 @@ def test_threads_keep_the_share_of_their_process(monkeypatch: pytest.MonkeyPatch
 def _native(thread: threading.Thread) -> int:
     assert thread.native_id is not None
     return thread.native_id
+
+
+def test_calls_that_block_at_once_have_a_thread_each(two_nodes: tuple[Ros, Ros]) -> None:
+    loop, together, met = two_nodes[0].loop, threading.Barrier(4), list[int]()
+
+    def work() -> None:
+        together.wait(LIMIT)
+        met.append(threading.get_ident())
+
+    for _ in range(4):
+        loop.on_executor(lambda: loop.in_thread(work))
+    wait_until(lambda: len(met) == 4, LIMIT, "all four are there at once")
+    assert len(set(met)) == 4
+
+
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")
+def test_a_thread_does_one_work_after_the_other_and_keeps_nothing_of_it(two_nodes: tuple[Ros, Ros]) -> None:
+    loop, done = two_nodes[0].loop, list[tuple[int, dict[str, object]]]()
+
+    def work(kept: set[int] | None = None) -> None:
+        done.append((threading.get_ident(), get_contextvars()))
+        bind_contextvars(goal="of this work")
+
+    def waits_again(times: int) -> None:
+        wait_until(lambda: len(done) == times and len(loop._idle) == 1, LIMIT, f"the thread waits after {times}")
+
+    given = {1, 2}
+    gone = weakref.ref(given)
+    loop.in_thread(partial(work, given))
+    waits_again(1)
+    del given
+    assert gone() is None
+    loop.in_thread(work)
+    waits_again(2)
+    assert done == [(done[0][0], {})] * 2
+    loop.in_thread(broken)
+    wait_until(lambda: not loop._idle, LIMIT, "a bug ends its thread")
+    loop.in_thread(work)
+    waits_again(3)
+    assert done[2] != done[0]
+
+
+def test_no_more_threads_wait_than_a_limit(two_nodes: tuple[Ros, Ros], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("tms_ros.loop.IDLE", 2)
+    loop, ends, before = two_nodes[0].loop, [threading.Event() for _ in range(5)], set(threading.enumerate())
+    for end in ends:
+        loop.in_thread(partial(end.wait, LIMIT))
+    for ended, end in enumerate(ends, start=1):
+        end.set()
+        wait_until(lambda: len(loop._idle) == min(ended, 2), LIMIT, "it waits if no more than one other does")  # noqa: B023
+    wait_until(lambda: len(set(threading.enumerate()) - before) == 2, LIMIT, "the others have ended")
