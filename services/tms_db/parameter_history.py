@@ -22,7 +22,8 @@ from tms_runtime.log import Logger
 KEPT = 50  # changes a record
 ROOM = 3 * 2**20  # bytes; the store takes documents of 16 MB, see `_room`
 END_LIMIT = 1.0  # s that the last write may take
-WRITE_PERIOD = 2.0  # s between writes; what sensing changes in between counts as one change
+WRITE_PERIOD = 2.0  # s between rounds of writes; what sensing changes in between counts as one change
+AT_ONCE, PAUSE = 5, 0.1  # records a write, and s between those of a round: the store takes 2 ms each, readers wait
 
 Change = dict[str, Any]  # stamp, source, values
 
@@ -35,6 +36,7 @@ class ParameterHistory:
         self._lock = threading.Lock()
         self._storing = threading.Lock()  # while changes are on their way from memory to the store
         self._new: dict[Key, list[Change]] = {}
+        self._round: list[Key] = []  # still to be written in this round
         self._unclear = False  # it is not known how much of an earlier write was done
         self._worker = Worker("past", self._run, first=WRITE_PERIOD, finish=True)
 
@@ -74,13 +76,18 @@ class ParameterHistory:
         return changes
 
     def _run(self) -> float:
+        ending = self._worker.stopping
+        if ending or not self._round:
+            self._round = list(self._new)
+        some = self._round if ending else self._round[:AT_ONCE]
+        self._round = self._round[len(some) :]
         with self._storing:
-            self._store_new()
-        return WRITE_PERIOD
+            self._store_new(some)
+        return PAUSE if self._round else WRITE_PERIOD
 
-    def _store_new(self) -> None:
+    def _store_new(self, keys: list[Key]) -> None:
         with self._lock:
-            new, self._new = self._new, {}
+            new = {key: self._new.pop(key) for key in keys if key in self._new}
         try:
             if new:
                 with self._connection.use():
@@ -90,9 +97,8 @@ class ParameterHistory:
             self._log.info("history_waits", reason=error.reason)
             self._unclear = True
             with self._lock:
-                for key, later in self._new.items():
-                    new[key] = [*new.get(key, []), *later][-KEPT:]
-                self._new = new
+                for key, changes in new.items():
+                    self._new[key] = [*changes, *self._new.get(key, [])][-KEPT:]
 
     def _missing(self, new: Mapping[Key, list[Change]]) -> dict[Key, list[Change]]:
         """Changes that an earlier write has not stored: pushed twice, they would be listed twice. Reads once a key."""

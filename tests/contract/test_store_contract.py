@@ -520,12 +520,12 @@ def test_a_change_is_told_once_though_its_write_was_repeated(
         past.note(key, stamp, "cli", {"x": 1, "s": "a", "d": [1.5, 2.0]})
     with monkeypatch.context() as patch:
         patch.setattr(Collection, "bulk_write", lost)
-        past._store_new()
+        past._store_new(list(past._new))
     assert [len(past.changes(key)) for key in keys] == [1, 1]
     past.note(keys[0], stamp, "cli", {"x": 2})
     deadline = time.monotonic() + 20
     while past._new and time.monotonic() < deadline:  # the connection comes back by itself
-        past._store_new()
+        past._store_new(list(past._new))
         time.sleep(0.02)
     assert not past._new
     assert [[change["values"]["x"] for change in past.changes(key)] for key in keys] == [[2, 1], [1]]

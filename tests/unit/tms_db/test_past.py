@@ -1,13 +1,15 @@
 """The memory of a record's changes fits into one document of the store, however large they are."""
 
+from contextlib import nullcontext
 from datetime import datetime, timezone
+from types import SimpleNamespace
 from typing import Any
 
 import bson
 import pytest
 import structlog
 
-from tms_db.parameter_history import KEPT, ROOM, ParameterHistory
+from tms_db.parameter_history import AT_ONCE, KEPT, PAUSE, ROOM, WRITE_PERIOD, ParameterHistory
 
 NOON = datetime(2026, 1, 31, 12, 0, tzinfo=timezone.utc)
 KEY = ("zx200", "path")
@@ -19,11 +21,13 @@ class Stored:
 
     def __init__(self) -> None:
         self.changes: list[Any] = []
+        self.writes: list[int] = []  # documents of each
 
     def __getitem__(self, _: str) -> "Stored":
         return self
 
     def bulk_write(self, steps: list[Any], ordered: bool) -> None:
+        self.writes.append(len(steps))
         for step in steps:
             push = step._doc["$push"]["changes"]
             self.changes = [*self.changes, *push["$each"]][push["$slice"] :]
@@ -56,3 +60,22 @@ def test_one_that_is_too_large_alone_is_left_out() -> None:
     save(stored, 10)
     save(stored, ROOM)
     assert [len(change["values"]["x"]) for change in stored.changes] == [10]
+
+
+def test_a_round_writes_few_records_at_once_and_the_last_one_all() -> None:
+    stored, connection = Stored(), SimpleNamespace(use=nullcontext)
+    past: Any = ParameterHistory(stored, connection, structlog.stdlib.get_logger("test"))  # type: ignore[arg-type]
+
+    def note() -> None:
+        for number in range(2 * AT_ONCE + 1):
+            past.note(("zx200", f"r{number}"), NOON, "sp", {"x": number})
+
+    note()
+    assert [past._run() for _ in range(3)] == [PAUSE, PAUSE, WRITE_PERIOD]
+    assert stored.writes == [AT_ONCE, AT_ONCE, 1] and not past._new
+    note()
+    past._run()
+    note()  # the first ones anew, while others of the round still wait
+    past.stop()
+    past._run()
+    assert stored.writes[3:] == [AT_ONCE, 2 * AT_ONCE + 1] and not past._new
