@@ -31,10 +31,9 @@ END_CHECK_PERIOD = 0.5  # s
 FORGOTTEN = 3.0  # s; lease of discovery (5 s) less the age of the last announcement (1.75 s at most), 0.25 s to spare
 EXIT_LIMIT = 2.0  # s from SIGTERM to the end, even if the clean-up hangs
 PR_SET_PDEATHSIG = 1
-# Nice and real-time priority of processes that must not miss a beat on a busy PC, nor a beat of others, once they have
-# started: processes that are starting must not keep working ones from their beats. Twenty of them come to the end of
-# their imports at the same time, and each then makes its participant with real-time priority 1.
-# A stand-in is a machine, which no PC can keep from its motions; the bridge carries what a simulated machine tells. The
+# Nice and real-time priority of processes that must not miss a beat on a busy PC, once they have started: twenty that
+# start must not keep working ones from their beats, though each makes its participant with real-time priority 1. A
+# stand-in is a machine, which no PC can keep from its motions; the bridge carries what a simulated machine tells. The
 # ground must not fall behind machines: who needs a load waits for it. It has no beat, so no real-time priority.
 FIRST = {"tms_ts.node": (-15, 2), "tms_rc.node": (-12, 3), "tms_host.node": (-12, 3), "tms_sim.node": (-12, 3),
          "tms_mc.node": (-12, 3), "tms_if.node": (-12, 3), "tms_ground.node": (-5, 0)}  # fmt: skip
@@ -94,7 +93,8 @@ def _serve(site: Site, row: Process, leaving: ExitStack) -> int:
     Graph(ros, logger)
     if row.module in FIRST or row.group == row.machine:
         nice, realtime = FIRST.get(row.module, OF_A_MACHINE)
-        come_first(nice, threads(), realtime)
+        for _ in range(2):  # again for those that these have made meanwhile, and that may wait for work for ever
+            come_first(nice, threads(), realtime)
     logger.info("started", pid=os.getpid())
     _wait_for_end(stop, ros.failed, logger)
     return _end(app, health, logger)
