@@ -74,7 +74,7 @@ def between(old: Place, new: Place) -> list[tuple[float, Place]]:
 
 def shape_of(body: Body, motion: Motion) -> BaseGeometry:
     """What a machine covers where it is."""
-    return shapely.union_all(covered_by(body, place_of(motion), 0.0, 0.0).shapes)
+    return shapely.union_all(parts_of(body, motion).geoms)
 
 
 def parts_of(body: Body, motion: Motion) -> shapely.GeometryCollection:

@@ -37,7 +37,7 @@ class ParameterHistory:
         self._storing = threading.Lock()  # while changes are on their way from memory to the store
         self._new: dict[Key, list[Change]] = {}
         self._round: list[Key] = []  # still to be written in this round
-        self._unclear = False  # it is not known how much of an earlier write was done
+        self._unclear = set[Key]()  # it is not known whether an earlier write of these was done
         self._worker = Worker("past", self._run, first=WRITE_PERIOD, finish=True)
 
     def start(self) -> None:
@@ -91,18 +91,20 @@ class ParameterHistory:
         try:
             if new:
                 with self._connection.use():
-                    self._save(self._missing(new) if self._unclear else new)
-                self._unclear = False
+                    self._save(self._missing(new))
+                self._unclear -= new.keys()
         except DbError as error:  # kept in memory until the store is back
             self._log.info("history_waits", reason=error.reason)
-            self._unclear = True
+            self._unclear |= new.keys()
+            self._round = []  # the next one begins after a while, with all of them
             with self._lock:
                 for key, changes in new.items():
                     self._new[key] = [*changes, *self._new.get(key, [])][-KEPT:]
 
     def _missing(self, new: Mapping[Key, list[Change]]) -> dict[Key, list[Change]]:
-        """Changes that an earlier write has not stored: pushed twice, they would be listed twice. Reads once a key."""
-        return {key: others for key, changes in new.items() if (others := _others(changes, self._load(key)))}
+        """Changes that an earlier write has not stored: pushed twice, they would be listed twice."""
+        found = {key: _others(old, self._load(key)) if key in self._unclear else old for key, old in new.items()}
+        return {key: changes for key, changes in found.items() if changes}
 
     def _save(self, new: Mapping[Key, list[Change]]) -> None:
         steps = [

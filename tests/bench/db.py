@@ -42,7 +42,7 @@ def measure() -> Iterable[Figure]:
         yield Figure("parameter read p50", "ms", at(0.5, read), 2 * at(0.5, floor), at(0.5, floor))
         yield Figure("parameter read p99", "ms", at(0.99, read), 25.0, at(0.99, floor), usual_floor=1.0)
         with _rows(f"mongodb://127.0.0.1:{own.site.file.ports.store}/?directConnection=true") as rows:
-            bare = _store(rows, range(TASKS // 2))  # the other half follows, for the same reason
+            bare = _store(rows, range(TASKS // 2))  # half before and half after: by turns as well
             registered = _register(ros)
             bare += _store(rows, range(TASKS // 2, TASKS))
         yield Figure(f"{TASKS} tasks registered", "s", registered, 1.0, bare, usual_floor=USUAL_TASKS)

@@ -23,7 +23,7 @@ from tms_db.arrays import changed
 from tms_db.batches import Batches, Update
 from tms_db.connection import StoreConnection
 from tms_db.history import Event, History, Run
-from tms_db.parameter_history import ParameterHistory
+from tms_db.parameter_history import AT_ONCE, ParameterHistory
 from tms_db.parameters import Parameters, RecordEdit
 from tms_db.record_cache import Head
 from tms_db.records import Record, Value, models_of
@@ -529,6 +529,33 @@ def test_a_change_is_told_once_though_its_write_was_repeated(
         time.sleep(0.02)
     assert not past._new
     assert [[change["values"]["x"] for change in past.changes(key)] for key in keys] == [[2, 1], [1]]
+    batched.connection.stop()
+
+
+def test_a_change_is_told_once_though_others_were_stored_between_its_writes(
+    shared_db: store.Db, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    batched = Batched(shared_db)
+    past = ParameterHistory(shared_db, batched.connection, structlog.stdlib.get_logger("test"))
+    write, keys, lost = Collection.bulk_write, [("zx200", f"r{number}") for number in range(2 * AT_ONCE)], list[bool]()
+
+    def losing(self: Collection[Any], steps: list[Any], **more: Any) -> Any:
+        done = write(self, steps, **more)
+        if not lost:
+            lost.append(True)
+            raise AutoReconnect("the connection went before the answer came")
+        return done
+
+    monkeypatch.setattr(Collection, "bulk_write", losing)
+    for key in keys:
+        past.note(key, BEGIN, "cli", {"x": 1})
+    past._store_new(keys[:AT_ONCE])
+    assert lost and set(keys[:AT_ONCE]) <= past._new.keys()
+    deadline = time.monotonic() + 20
+    while past._new and time.monotonic() < deadline:  # the connection comes back by itself
+        past._store_new(keys[AT_ONCE:] if keys[-1] in past._new else keys)
+        time.sleep(0.02)
+    assert [len(past.changes(key)) for key in keys] == [1] * len(keys)
     batched.connection.stop()
 
 

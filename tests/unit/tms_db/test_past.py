@@ -10,6 +10,8 @@ import pytest
 import structlog
 
 from tms_db.parameter_history import AT_ONCE, KEPT, PAUSE, ROOM, WRITE_PERIOD, ParameterHistory
+from tms_db.reasons import NoStore
+from tms_reason.errors import DbError
 
 NOON = datetime(2026, 1, 31, 12, 0, tzinfo=timezone.utc)
 KEY = ("zx200", "path")
@@ -79,3 +81,14 @@ def test_a_round_writes_few_records_at_once_and_the_last_one_all() -> None:
     past.stop()
     past._run()
     assert stored.writes[3:] == [AT_ONCE, 2 * AT_ONCE + 1] and not past._new
+
+
+def test_a_round_ends_when_the_store_is_away() -> None:
+    def away() -> nullcontext[None]:
+        raise DbError(NoStore())
+
+    past: Any = ParameterHistory(Stored(), SimpleNamespace(use=away), structlog.stdlib.get_logger("test"))  # type: ignore[arg-type]
+    for number in range(2 * AT_ONCE):
+        past.note(("zx200", f"r{number}"), NOON, "sp", {"x": number})
+    assert past._run() == WRITE_PERIOD
+    assert len(past._new) == 2 * AT_ONCE
