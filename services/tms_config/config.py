@@ -75,6 +75,12 @@ class Site:
         peer = self.file.peers.get(machine)
         return "" if peer is None or peer.leaf == "v5" else peer.leaf
 
+    def require_pc(self) -> str:
+        """Which of `pcs:` this is, empty without them; ConfigError, which says how to choose, where it is not known."""
+        if self.file.pcs and self.pc is None:
+            raise ConfigError(reasons.WhichPc(self.name, tuple(self.file.pcs)))
+        return self.pc or ""
+
     def start_of(self, machine: str) -> tuple[float, float, float]:
         """Start place of a stand-in: x [m], y [m], yaw [rad] in map."""
         return self.file.machines[machine].start or self.model_of(machine).start

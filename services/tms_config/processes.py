@@ -4,7 +4,7 @@ import difflib
 from collections import Counter
 from dataclasses import dataclass, replace
 
-from tms_config import pcs, reasons
+from tms_config import reasons
 from tms_config.config import CONFIGS, Site
 from tms_config.models import MachineModel
 from tms_config.site_file import Bridge, Role, roles
@@ -80,7 +80,7 @@ def here(site: Site) -> tuple[Process, ...]:
     Raises:
         ConfigError: as `table`; or it is not known which PC of the site this is.
     """
-    pcs.required(site)
+    site.require_pc()
     return tuple(row for row in table(site) if not row.pc or row.pc == site.pc)
 
 

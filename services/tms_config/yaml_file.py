@@ -1,9 +1,10 @@
 """Reads a YAML file into a frozen model; every fault is an error that names file, line and key."""
 
 from collections.abc import Hashable
+from functools import lru_cache
 from itertools import islice
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 import yaml
 from pydantic import ValidationError
@@ -72,15 +73,14 @@ def read_text(path: Path) -> str:
         raise ConfigError(reasons.BadFile(str(path), reasons.NotUtf8())) from error
 
 
-def read_yaml(path: Path) -> Any:
-    """Parsed content of a YAML file.
+def read_yaml(path: Path, text: str | None = None) -> Any:
+    """Parsed content of a YAML file; `text`: its content, where it was read already.
 
     Raises:
         ConfigError: it cannot be read or is no YAML.
     """
-    text = read_text(path)
     try:
-        return yaml.load(text, _Loader)  # a safe loader
+        return yaml.load(read_text(path) if text is None else text, _Loader)  # a safe loader
     except yaml.MarkedYAMLError as error:
         line = error.problem_mark.line + 1 if error.problem_mark else 0
         reason = error.reason if isinstance(error, _BadMapping) else reasons.NoYaml(str(error.problem))
@@ -90,12 +90,17 @@ def read_yaml(path: Path) -> Any:
 
 
 def parse(path: Path, model: type[T]) -> T:
-    """A settings file as its model.
+    """A settings file as its model; as long as its text is the same, it is read once.
 
     Raises:
         ConfigError: names the file, the keys and what is wrong with them.
     """
-    data = read_yaml(path)
+    return cast(T, _checked(path, read_text(path), model))
+
+
+@lru_cache(maxsize=16)  # a site file and its machine models take 20 ms; processes that are forked have them
+def _checked(path: Path, text: str, model: type[Settings]) -> Settings:
+    data = read_yaml(path, text)
     if not isinstance(data, dict):
         raise ConfigError(reasons.BadFile(str(path), reasons.NoMapping()))
     try:

@@ -24,8 +24,10 @@ import setproctitle
 from supervisor.options import ProcessConfig, ServerOptions
 from supervisor.supervisord import go
 
+from tms_config.config import load_site
 from tms_host.supervisor import AT_ONCE
 from tms_reason import wire
+from tms_reason.errors import ConfigError
 
 MODULE = "tms_runtime.run"  # programs that are forked; others (none today) are executed as usual
 LIBRARIES = (
@@ -139,6 +141,8 @@ def load(processes: Iterable[str]) -> None:
     ctypes.CDLL(MIDDLEWARE, mode=ctypes.RTLD_GLOBAL)
     for name in OURS:
         importlib.import_module(name)
+    with suppress(ConfigError):  # each program tells what is wrong with the site
+        load_site()
     wire.load()
     wire.load.cache_clear()  # each process looks for those that were added since
 

@@ -3,7 +3,6 @@
 import os
 from pathlib import Path
 
-from tms_config import pcs
 from tms_config.config import PROJECT, Site
 from tms_runtime import addresses, state_folder
 
@@ -16,6 +15,7 @@ ON_LOOPBACK = {
     "RMW_FASTRTPS_USE_QOS_FROM_XML": "1",  # heartbeats: see the profile
 }
 LOOPBACK = "<address>127.0.0.1</address>"
+MULTICAST = "<avoid_builtin_multicast>false<", "<avoid_builtin_multicast>true<"  # one PC; several
 
 
 def environment(site: Site) -> dict[str, str]:
@@ -44,14 +44,13 @@ def environment(site: Site) -> dict[str, str]:
 
 
 def _profile(site: Site) -> Path:
-    """The loopback profile; on a site of several PCs, a copy with this PC's address added."""
+    """The loopback profile; on a site of several PCs, a copy with this PC's address, and less multicast."""
     if not site.file.pcs:
         return PROFILE
-    pcs.required(site)
-    assert site.pc is not None
-    address = addresses.resolve(site, site.file.pcs[site.pc].address)
+    address = addresses.resolve(site, site.file.pcs[site.require_pc()].address)
     path = site.state / "dds.xml"
-    text = PROFILE.read_text(encoding="utf-8").replace(LOOPBACK, f"<address>{address}</address>{LOOPBACK}")
+    text = PROFILE.read_text(encoding="utf-8").replace(*MULTICAST)
+    text = text.replace(LOOPBACK, f"<address>{address}</address>{LOOPBACK}")
     if not path.exists() or path.read_text(encoding="utf-8") != text:
         state_folder.make(site.state)
         with state_folder.private():

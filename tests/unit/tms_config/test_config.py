@@ -162,6 +162,14 @@ def test_missing_binary_and_other_files(tmp_path: Path) -> None:
     assert refused(str(file)) == BadFile(str(file), NoMapping())
 
 
+def test_a_file_is_read_anew_when_its_text_has_changed(tmp_path: Path) -> None:
+    file = tmp_path / "site.yaml"
+    file.write_text(yaml.safe_dump(site_data(70, 20000)))
+    first, again = load_site(str(file)), load_site(str(file))
+    file.write_text(yaml.safe_dump(site_data(71, 20000)))
+    assert (again.file is first.file, first.domain, load_site(str(file)).domain) == (True, 70, 71)
+
+
 def test_environment_wins_over_the_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("ROS_DOMAIN_ID", "7")
     monkeypatch.setenv("TMS_STATE", str(tmp_path / "s"))
