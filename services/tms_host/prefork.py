@@ -12,6 +12,7 @@ import gc
 import importlib
 import logging
 import os
+import pkgutil
 import signal
 import sys
 from collections.abc import Iterable
@@ -24,6 +25,7 @@ import setproctitle
 from supervisor.options import ProcessConfig, ServerOptions
 from supervisor.supervisord import go
 
+import tms_decision
 from tms_config.config import load_site
 from tms_host.supervisor import AT_ONCE
 from tms_reason import wire
@@ -51,7 +53,9 @@ INTERFACES = (
     "tms_msg_ground", "tms_msg_sp", "control_msgs", "nav2_msgs", "com3_msgs", "diagnostic_msgs", "geometry_msgs",
     "nav_msgs", "sensor_msgs", "std_msgs", "std_srvs", "tf2_msgs", "trajectory_msgs", "visualization_msgs",
 )  # fmt: skip
-OURS = ("tms_runtime.run", "tms_runtime.app", "tms_runtime.graph", "tms_kit.subtask_server")  # and all reasons
+OURS = (  # and all reasons and decisions
+    "tms_runtime.run", "tms_runtime.app", "tms_runtime.graph", "tms_kit.subtask_server", "tms_machine.sensing",
+)  # fmt: skip
 SERVICES = Path(__file__).resolve().parents[1]
 MIDDLEWARE = "librmw_fastrtps_cpp.so"
 PR_SET_PDEATHSIG = 1
@@ -139,7 +143,8 @@ def load(processes: Iterable[str]) -> None:
         for kind in ("msg", "srv", "action"):
             _load_types(f"{package}.{kind}")
     ctypes.CDLL(MIDDLEWARE, mode=ctypes.RTLD_GLOBAL)
-    for name in OURS:
+    decisions = [one.name for one in pkgutil.walk_packages(tms_decision.__path__, "tms_decision.")]  # without metrics
+    for name in (*OURS, *decisions):
         importlib.import_module(name)
     with suppress(ConfigError):  # each program tells what is wrong with the site
         load_site()

@@ -18,6 +18,7 @@ from conftest import PROJECT
 
 SITE_IMAGE = "tms:site"
 collect_ignore = [] if os.environ.get("TMS_FLEET") else ["test_fleet.py"]  # it asks for the whole PC
+LONGEST = 1200.0  # s for a script; the first image takes a slow PC 6 minutes, which is not the time of a test
 
 
 class Engine:
@@ -39,7 +40,9 @@ class Engine:
 def script(name: str, *words: str, check: bool = True) -> subprocess.CompletedProcess[str]:
     """Run a script of `deploy`."""
     argv = ["sh", str(PROJECT / "deploy" / name), *words]
-    done = subprocess.run(argv, env={**os.environ, "DOCKER": DOCKER}, capture_output=True, text=True, check=False)
+    done = subprocess.run(
+        argv, env={**os.environ, "DOCKER": DOCKER}, capture_output=True, text=True, timeout=LONGEST, check=False
+    )
     assert done.returncode == 0 or not check, done.stderr[-2000:]
     return done
 

@@ -13,7 +13,7 @@ from fleet import Fleet, press
 from bench.rig.costs import pss
 from bench.scale import RUNS, SETTLE, watched
 
-pytestmark = [pytest.mark.docker, pytest.mark.timeout(600)]
+pytestmark = [pytest.mark.docker, pytest.mark.timeout(600, func_only=True)]
 SIZES = [int(size) for size in os.environ.get("TMS_FLEET", "").split()]
 
 

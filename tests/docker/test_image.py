@@ -3,7 +3,7 @@
 import pytest
 from docker_site import docker
 
-pytestmark = [pytest.mark.docker, pytest.mark.timeout(400)]
+pytestmark = [pytest.mark.docker, pytest.mark.timeout(400, func_only=True)]
 LARGEST = 500e6  # bytes
 
 

@@ -15,7 +15,7 @@ from conftest import wait_until
 from lateness import Lateness
 from prometheus_server import processes_up, prometheus, query
 
-pytestmark = [pytest.mark.docker, pytest.mark.timeout(400)]
+pytestmark = [pytest.mark.docker, pytest.mark.timeout(400, func_only=True)]
 LOSS = 0.7  # s from the loss of a process, a PC or a cable to the command that stops the machine (design, section 9)
 PRESS = 0.05  # s from the press of the software stop to that command
 LOSSY = """table inet bad {

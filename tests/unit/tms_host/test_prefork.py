@@ -191,6 +191,18 @@ def test_what_each_process_imports_is_loaded_before_it_is_forked() -> None:
     assert {one for one in needed - loaded if not one.startswith(("tms_", "_"))} - sys.stdlib_module_names == set()
 
 
+def test_decisions_of_gateways_and_runs_are_loaded_before_they_are_forked() -> None:
+    """Their many small classes are most of what a gateway would still import."""
+    code = (
+        f"{LOAD}; import sys; old = set(sys.modules); import tms_rc.node, tms_ts.node; "
+        "print(*(one for one in set(sys.modules) - old if one.startswith('tms_decision')))"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=PROJECT / "services", capture_output=True, text=True, timeout=60, check=True
+    )
+    assert done.stdout.split() == []
+
+
 def test_what_no_process_of_a_pc_needs_is_not_loaded() -> None:
     loaded = imported("from tms_host import prefork; prefork.load(['zx200:rc', 'tms:db'])")
     assert "pymongo" in loaded and not {"ompl", "py_trees", "fastapi"} & loaded
