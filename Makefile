@@ -203,8 +203,9 @@ coverage: setup ## unit tests take every branch of the decisions and proofs
 	$(PY) -m coverage run --data-file=$(VENV)/coverage --branch --source tms_decision,tms_proof -m pytest -q tests/unit/tms_decision tests/unit/tms_proof tests/unit/tms_ts/test_interrupted.py
 	$(PY) -m coverage report --data-file=$(VENV)/coverage --show-missing --skip-covered --fail-under=100
 
-nightly: setup ## what takes hours: all tests, properties with 400 examples, 100,000 schedules, all mutants, mutmut, replays and 30 power cuts (as root), 60 m3 of earth with kills, 50 rounds of two trucks and a road, a long drill
+nightly: setup ## what takes hours: all tests, also of containers, properties with 400 examples, 100,000 schedules, all mutants, mutmut, replays and 30 power cuts (as root), 60 m3 of earth with kills, 50 rounds of two trucks and a road, a long drill
 	@$(MAKE) test TURN=all
+	@$(MAKE) test-docker
 	$(PY) -m pytest -q -n $(WORKERS) --hypothesis-profile=thorough tests/unit tests/fuzz
 	@$(MAKE) coverage
 	@$(MAKE) simulate SCHEDULES=100000
@@ -238,8 +239,8 @@ soak: setup ## two trucks and an excavator move earth while processes are killed
 containers: ## the system packages of test-docker: a Docker engine, Compose and more
 	@DOCKER=$(DOCKER) sh deploy/system-packages.sh containers
 
-test-docker: setup containers ## a site of four PCs as containers; starts a Docker engine where none runs
-	@DOCKER=$(DOCKER) $(PY) -m pytest -p no:randomly -m docker -s --durations=0 tests/docker
+test-docker: setup containers ## a site of four PCs as containers; starts a Docker engine where none runs (TURN=today: without what comes on other days)
+	@DOCKER=$(DOCKER) $(PY) -m pytest -p no:randomly -m docker -s --durations=0 $(if $(TURN),--turn $(TURN)) tests/docker
 
 fleet: setup containers ## how many machines four PCs carry, each with a scheduler: containers on this PC (MACHINES="40 60")
 	@TMS_FLEET="$(or $(MACHINES),40 60)" DOCKER=$(DOCKER) $(PY) -m pytest -p no:randomly -m docker -s tests/docker/test_fleet.py

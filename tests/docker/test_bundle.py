@@ -10,7 +10,7 @@ import yaml
 
 from conftest import NO_CONSOLE, PROJECT, ports_of, site_data, tool
 
-pytestmark = [pytest.mark.docker, pytest.mark.timeout(600, func_only=True)]
+pytestmark = [pytest.mark.docker, pytest.mark.turns, pytest.mark.timeout(600, func_only=True)]
 INSTALL = "ip link set lo up && make setup && tms up && tms rearm --all --yes && tms status && tms down"
 
 

@@ -10,7 +10,7 @@ from docker_site import DOCKER, docker
 
 from conftest import PROJECT, wait_until
 
-pytestmark = [pytest.mark.docker, pytest.mark.timeout(400, func_only=True)]
+pytestmark = [pytest.mark.docker, pytest.mark.turns, pytest.mark.timeout(400, func_only=True)]
 PCS = ("cps", "machine", "sensing", "sim")
 
 

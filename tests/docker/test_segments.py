@@ -3,7 +3,7 @@
 import pytest
 from docker_site import Yard
 
-pytestmark = [pytest.mark.docker, pytest.mark.timeout(400, func_only=True)]
+pytestmark = [pytest.mark.docker, pytest.mark.turns, pytest.mark.timeout(400, func_only=True)]
 
 
 def test_a_task_runs_where_no_multicast_passes(yard_apart: Yard) -> None:

@@ -8,7 +8,7 @@ from docker_site import LOOK, Yard, docker
 
 from conftest import wait_until
 
-pytestmark = [pytest.mark.docker, pytest.mark.timeout(400, func_only=True)]
+pytestmark = [pytest.mark.docker, pytest.mark.turns, pytest.mark.timeout(400, func_only=True)]
 
 
 def newest(yard: Yard) -> dict[str, Any]:
