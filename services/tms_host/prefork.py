@@ -2,9 +2,10 @@
 
 A start by `execve` spends most of its time and half of its memory on importing the same once more. A fork shares it,
 and supervisord still supervises the real pid. A restarted process always runs the code and configuration that are on
-disk now: once a module that is loaded here has changed there, programs are executed. Modules that only some processes
-run are not loaded here, since their metrics would be everybody's. Nothing here opens a ROS context, whose threads would
-not survive the fork (those of LTTng, which rclpy brings, are not missed).
+disk now: once a module that is loaded here has changed there, programs are executed, and files of settings are read
+anew once their text has. Modules that only some processes run are not loaded here, since their metrics would be
+everybody's; decisions have none. Nothing here opens a ROS context, whose threads would not survive the fork (those of
+LTTng, which rclpy brings, are not missed).
 """
 
 import ctypes
@@ -143,7 +144,7 @@ def load(processes: Iterable[str]) -> None:
         for kind in ("msg", "srv", "action"):
             _load_types(f"{package}.{kind}")
     ctypes.CDLL(MIDDLEWARE, mode=ctypes.RTLD_GLOBAL)
-    decisions = [one.name for one in pkgutil.walk_packages(tms_decision.__path__, "tms_decision.")]  # without metrics
+    decisions = [one.name for one in pkgutil.walk_packages(tms_decision.__path__, "tms_decision.")]
     for name in (*OURS, *decisions):
         importlib.import_module(name)
     with suppress(ConfigError):  # each program tells what is wrong with the site

@@ -164,23 +164,26 @@ def test_a_library_of_all_that_is_missing_is_in_the_log_of_supervisord(tmp_path:
     assert told in (tmp_path / "log").read_text()
 
 
-def test_what_only_some_processes_run_is_not_shared() -> None:
-    """Its metrics would be those of all processes."""
-    code = f"import sys; {LOAD}; print(*sys.modules)"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=True)
-    loaded = {name for name in done.stdout.split() if name.startswith("tms_")}
-    parts = tuple(f"tms_{name}." for name in ("db", "if", "mc", "rc", "rp", "sim", "sp", "subtasks", "ts", "ur"))
-    assert "tms_runtime.run" in loaded
-    assert {name for name in loaded if name.startswith(parts) and not name.endswith("reasons")} == set()
-
-
-def imported(code: str) -> set[str]:
-    """Names of the packages that a program has imported when it ends."""
+def modules(code: str) -> set[str]:
+    """Names of the modules that a program has imported when it ends."""
     done = subprocess.run(
-        [sys.executable, "-c", f"{code}; import sys; print(*{{one.partition('.')[0] for one in sys.modules}})"],
+        [sys.executable, "-c", f"{code}; import sys; print(*sys.modules)"],
         cwd=PROJECT / "services", capture_output=True, text=True, timeout=60, check=True,
     )  # fmt: skip
     return set(done.stdout.split())
+
+
+def imported(code: str) -> set[str]:
+    """Names of their packages."""
+    return {one.partition(".")[0] for one in modules(code)}
+
+
+def test_what_only_some_processes_run_is_not_shared() -> None:
+    """Its metrics would be those of all processes."""
+    loaded = {name for name in modules(LOAD) if name.startswith("tms_")}
+    parts = tuple(f"tms_{name}." for name in ("db", "if", "mc", "rc", "rp", "sim", "sp", "subtasks", "ts", "ur"))
+    assert "tms_runtime.run" in loaded
+    assert {name for name in loaded if name.startswith(parts) and not name.endswith("reasons")} == set()
 
 
 def test_what_each_process_imports_is_loaded_before_it_is_forked() -> None:
@@ -193,14 +196,8 @@ def test_what_each_process_imports_is_loaded_before_it_is_forked() -> None:
 
 def test_decisions_of_gateways_and_runs_are_loaded_before_they_are_forked() -> None:
     """Their many small classes are most of what a gateway would still import."""
-    code = (
-        f"{LOAD}; import sys; old = set(sys.modules); import tms_rc.node, tms_ts.node; "
-        "print(*(one for one in set(sys.modules) - old if one.startswith('tms_decision')))"
-    )
-    done = subprocess.run(
-        [sys.executable, "-c", code], cwd=PROJECT / "services", capture_output=True, text=True, timeout=60, check=True
-    )
-    assert done.stdout.split() == []
+    needed = {one for one in modules("import tms_rc.node, tms_ts.node") if one.startswith("tms_decision.")}
+    assert needed and needed - modules(LOAD) == set()
 
 
 def test_what_no_process_of_a_pc_needs_is_not_loaded() -> None:
