@@ -1,5 +1,6 @@
 """One ExecuteTask goal: from the stored task to the machines' stand-still."""
 
+import threading
 import uuid
 from dataclasses import dataclass
 
@@ -29,7 +30,7 @@ from tms_ts.interrupted import Interrupted
 from tms_ts.interrupted_run import Header, InterruptedRun
 from tms_ts.journal import Journal
 from tms_ts.leases import Leases
-from tms_ts.machines import Identity, Machines
+from tms_ts.machines import Identity, LeafPeer, Machines
 from tms_ts.numbers import Numbers, no_disk
 from tms_ts.other_runs import orders_told, writes_told
 from tms_ts.place_check import orders_of
@@ -49,6 +50,9 @@ BEGIN_STORED = 5.0  # s for the known facts of a run to be on the disk before it
 END_STORED = 5.0  # s for its end to be on the disk, before it is reported with a note that it is not
 SERVERS_LIMIT = 15.0  # s for the subtasks' servers to be there after their start ...
 SERVER_START = 3.0  # s, ... and this for each of them: many starting at once share the cores
+# Times as long as a client took to be made: all processes of the site hear of its eight ends. Made in one go, those
+# of two runs kept goals at work from their beats on full processors: their machines were stopped.
+REST = 2.0
 CODES = {
     "success": "",
     "failure": "FAILED",
@@ -85,6 +89,7 @@ class Execution:
 
     def __init__(self, parts: Parts) -> None:
         self._parts, self._ros = parts, parts.app.ros
+        self._making = threading.Lock()  # clients, of one run at a time
 
     def execute(self, goal: TaskGoal) -> Ended[ExecuteTask.Result]:
         """Run a task from the database to the machines' stand-still; the end is stored, then reported."""
@@ -217,15 +222,24 @@ class Execution:
         problem = hosts.start(processes, run.cancelled.is_set)
         if problem is not None and not run.cancelled.is_set():
             raise TaskError(problem, "NO_PROCESS")
-        waiting = {name: machines.peer(*name.split(":", 1)) for name in processes}
+        waiting = self._clients(run, processes, machines)
         limit = SERVERS_LIMIT + SERVER_START * len(waiting)
         deadline = monotonic() + limit
-        while waiting and not run.cancelled.is_set():
-            waiting = {name: peer for name, peer in waiting.items() if not peer.ready()}
-            if waiting and monotonic() > deadline:
+        while not run.cancelled.is_set() and (waiting := {n: peer for n, peer in waiting.items() if not peer.ready()}):
+            if monotonic() > deadline:
                 name = next(iter(waiting))
                 raise TaskError(NoServer(name, waiting[name].name, limit))
-            run.wake.wait(0.02)
+            run.cancelled.wait(0.02)
+
+    def _clients(self, run: Run, processes: list[str], machines: Machines) -> dict[str, LeafPeer]:
+        """A client for each subtask, with a rest after each."""
+        clients: dict[str, LeafPeer] = {}
+        for name in processes:
+            with self._making:
+                begun = monotonic()
+                clients[name] = machines.peer(*name.split(":", 1))
+                run.cancelled.wait(REST * (monotonic() - begun))
+        return clients
 
 
 class _RunPermits:

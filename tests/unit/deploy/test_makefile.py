@@ -9,7 +9,19 @@ import pytest
 from conftest import PROJECT
 from tms_config.site_file import ROLES
 
-HIDDEN = {"SITE", "ROLE", "PC", "RUNTIME", "VENV", "NAV2_DISTRO", "LOCK", "TMS_SITE", "TMS_IMAGE", "MAKEFLAGS"}
+HIDDEN = {
+    "SITE",
+    "ROLE",
+    "PC",
+    "RUNTIME",
+    "VENV",
+    "NAV2_DISTRO",
+    "LOCK",
+    "PYTHON",
+    "TMS_SITE",
+    "TMS_IMAGE",
+    "MAKEFLAGS",
+}
 
 
 def make(*argv: str) -> str:
@@ -47,6 +59,18 @@ def test_who_asks_for_the_other_ones_gets_them(built: str) -> None:
 
 def test_without_any_they_are_those_of_jazzy(tmp_path: Path) -> None:
     assert f"touch {tmp_path}/.interfaces-jazzy" in make("interfaces", f"VENV={tmp_path}")
+
+
+@pytest.mark.parametrize(("whole", "taken"), [(True, "distribution"), (False, "python3")])
+def test_the_distributions_python_is_taken_where_it_is_whole(tmp_path: Path, whole: bool, taken: str) -> None:
+    program = tmp_path / "distribution"
+    program.write_text(f"#!/bin/sh\nexit {int(not whole)}\n")
+    program.chmod(0o755)
+    commands = make("setup", f"VENV={tmp_path}/venv", f"DISTRIBUTION={program}").splitlines()
+    expected = {"distribution": str(program), "python3": "python3"}[taken]
+    assert f"{expected} -m venv {tmp_path}/venv" in commands
+    assert [line for line in commands if line.startswith(f"PYTHON={expected} sh deploy/system-packages.sh")]
+    assert f"python3.13 -m venv {tmp_path}/venv" in make("setup", f"VENV={tmp_path}/venv", "PYTHON=python3.13")
 
 
 @pytest.mark.parametrize(

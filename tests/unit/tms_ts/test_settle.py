@@ -204,6 +204,22 @@ def test_the_loop_never_sleeps_longer_than_its_period_after_many_wakes(
     assert len(waits) >= 110
 
 
+def test_a_run_rests_after_each_client_and_looks_at_a_calm_pace(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each process of the site hears of a new client; goals at work elsewhere need the processors for their beats."""
+    now, rests, looks = [0.0], list[float](), [False, False, True]
+
+    def peer(machine: str, subtask: str) -> object:
+        now[0] += 0.05
+        return SimpleNamespace(ready=lambda: machine == "r1" or looks.pop(0))
+
+    hosts = SimpleNamespace(wait_known=lambda seconds: None, start=lambda names, cancelled: None)
+    run = SimpleNamespace(cancelled=SimpleNamespace(is_set=lambda: False, wait=rests.append))
+    monkeypatch.setattr(time, "monotonic", lambda: now[0])
+    execution = Execution(parts([], hosts=hosts))
+    execution._prepare(run, ["r1:boom", "r2:boom"], SimpleNamespace(peer=peer))  # type: ignore[arg-type]
+    assert rests == pytest.approx([0.1, 0.1, 0.02, 0.02])
+
+
 def test_a_run_that_meets_a_bug_is_closed_in_the_history(rows: list[Any]) -> None:
     runs = ActiveRuns()
     execution = Execution(parts(rows, runs=runs))
