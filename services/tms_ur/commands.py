@@ -3,7 +3,6 @@
 import math
 import threading
 from collections.abc import Iterator
-from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -136,7 +135,7 @@ def _machines(app: FastAPI, client: "SiteClient", note: _Note, site: Site) -> No
     async def stop(request: Request, asked: StopAsked, person: Viewer) -> list[Receipt]:
         machines = [_known(asked.machine, names)] if asked.machine else names
         who = note.of_stop(request, person, "stop", asked.machine or "all machines")
-        return await anyio.to_thread.run_sync(_stop_all, client, machines, who, limiter=stops)
+        return await anyio.to_thread.run_sync(client.stop, machines, SoftwareStopBy(who), limiter=stops)
 
     @app.post("/api/machines/{name}/rearm", summary="Re-arm a stopped machine, in two steps", responses=ANSWERS)
     def rearm(
@@ -161,12 +160,6 @@ def _known(machine: str, names: list[str]) -> str:
     if machine not in names:
         raise TmsError(NoMachine(machine, tuple(names)))
     return machine
-
-
-def _stop_all(client: "SiteClient", machines: list[str], who: str) -> list[Receipt]:
-    cause = SoftwareStopBy(who)
-    with ThreadPoolExecutor(max(1, len(machines)), "stop") as pool:
-        return list(pool.map(lambda machine: client.stop(machine, cause), machines))
 
 
 def _stored(app: FastAPI, client: "SiteClient", note: _Note, site: Site) -> None:

@@ -1,11 +1,17 @@
 """Machines as the API commands them: blocking calls of their gateways, for worker threads."""
 
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from queue import Empty, Queue
+
 from tms_msg_rc.srv import Rearm, StopMachine, TakeMachine
 
+from tms_config.naming import process_of
 from tms_decision import RECEIPT_LIMIT
 from tms_reason import wire
 from tms_reason.errors import RosError
 from tms_reason.reason import Reason
+from tms_ros.reasons import NoAnswer
 from tms_runtime.priority import URGENT, undisturbed
 from tms_ur import gateway_areas, messages
 from tms_ur.answers import checked
@@ -17,18 +23,34 @@ from tms_ur.run_calls import RunCalls
 class MachineCalls(RunCalls):
     """What is asked of gateways about their machines."""
 
-    def stop(self, machine: str, cause: Reason) -> Receipt:
-        """Stop one machine by a call of its gateway; where no answer comes, the receipt says that."""
-        try:
-            request = StopMachine.Request(cause=wire.to_line(cause))
-            with undisturbed(URGENT):
-                answer = self._ros.call(StopMachine, f"/{machine}/rc/stop", request, RECEIPT_LIMIT)
-        except RosError as error:
-            return Receipt(
-                machine=machine, confirmed=False, seconds=0.0, travel_joint="", travel_rad=0.0, travel_m=0.0,
-                cause=view(cause), detail=of_error(error), evidence=None, latched=False,
-            )  # fmt: skip
-        return messages.receipt(answer.receipt)
+    def stop(self, machines: list[str], cause: Reason) -> list[Receipt]:
+        """Stop machines by calls of their gateways; where no answer comes, the receipt says that.
+
+        One thread asks all of them before anybody waits for an answer: threads of their own began one by one on full
+        processors, and the tenth gateway heard of the stop after 2.3 s.
+        """
+        request = StopMachine.Request(cause=wire.to_line(cause))
+        answers = {machine: Queue[StopMachine.Response](1) for machine in machines}
+        with undisturbed(URGENT):
+            drops = {one: self._ros.call_then(StopMachine, _stop(one), request, answers[one].put) for one in machines}
+        self._ros.loop.on_executor(lambda: None)  # so that it waits for these answers, too
+
+        def answered(machine: str) -> Receipt:
+            try:
+                if (drop := drops[machine]) is not None:
+                    answer = _in_time(machine, answers[machine], drop)
+                else:  # its gateway is not there yet
+                    with undisturbed(URGENT):
+                        answer = self._ros.call(StopMachine, _stop(machine), request, RECEIPT_LIMIT)
+            except RosError as error:
+                return Receipt(
+                    machine=machine, confirmed=False, seconds=0.0, travel_joint="", travel_rad=0.0, travel_m=0.0,
+                    cause=view(cause), detail=of_error(error), evidence=None, latched=False,
+                )  # fmt: skip
+            return messages.receipt(answer.receipt)
+
+        with ThreadPoolExecutor(max(1, len(machines)), "stop") as pool:
+            return list(pool.map(answered, machines))
 
     def rearm(self, machine: str, token: str) -> Rearmed:
         """One step of re-arming.
@@ -52,3 +74,15 @@ class MachineCalls(RunCalls):
         request = TakeMachine.Request(who=who, back=True)
         answer = self._ros.call(TakeMachine, f"/{machine}/take", request, RECEIPT_LIMIT)
         return messages.receipt(checked(answer).receipt)
+
+
+def _stop(machine: str) -> str:
+    return f"/{machine}/rc/stop"
+
+
+def _in_time(machine: str, answers: "Queue[StopMachine.Response]", drop: Callable[[], None]) -> StopMachine.Response:
+    try:
+        return answers.get(timeout=RECEIPT_LIMIT)
+    except Empty:
+        drop()
+        raise RosError(NoAnswer(process_of(_stop(machine)), _stop(machine), RECEIPT_LIMIT)) from None

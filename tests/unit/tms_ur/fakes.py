@@ -231,12 +231,16 @@ class FakeSiteClient:
     def answer(self, question: str, yes: bool, by: str) -> None:
         self._called("answer", question, yes, by)
 
-    def stop(self, machine: str, cause: Reason) -> Receipt:
-        self._called("stop", machine, cause)
-        return Receipt(
-            machine=machine, confirmed=True, seconds=0.4, travel_joint="swing_joint", travel_rad=0.01, travel_m=0.0,
-            cause=view(cause), detail=None, evidence=None, latched=True,
-        )  # fmt: skip
+    def stop(self, machines: list[str], cause: Reason) -> list[Receipt]:
+        for machine in machines:
+            self._called("stop", machine, cause)
+        return [
+            Receipt(
+                machine=machine, confirmed=True, seconds=0.4, travel_joint="swing_joint", travel_rad=0.01, travel_m=0.0,
+                cause=view(cause), detail=None, evidence=None, latched=True,
+            )
+            for machine in machines
+        ]  # fmt: skip
 
     def give_back(self, machine: str, who: str) -> Receipt:
         self._called("give_back", machine, who)
