@@ -112,19 +112,19 @@ class Services:
         self, service_type: ServiceType[Req, Res], name: str, request: Req, answered: Callable[[Res], None]
     ) -> Callable[[], None] | None:
         """`call_now`, or None when the service does not exist."""
-        there = self.has_service(service_type, name)
-        return self.call_now(service_type, name, request, answered) if there else None
+        return self.call_now(service_type, name, request, answered) if self.has_service(service_type, name) else None
 
     def call_now(
         self, service_type: ServiceType[Req, Res], name: str, request: Req, answered: Callable[[Res], None]
     ) -> Callable[[], None]:
         """Send a request, whether its service exists or not: rmw looks through the whole graph for that.
 
-        `answered` is called on the executor thread, where this must be called, too. Returns how to drop the request.
+        `answered` is called on the executor thread. Returns how to drop the request.
         """
         client = self.prepare(service_type, name)
         future = client.call_async(request)
         future.add_done_callback(lambda done: answered(done.result()))
+        self._loop.on_executor(lambda: None)  # so that it waits for this answer, too
         return lambda: client.remove_pending_request(future)
 
     async def call_async(

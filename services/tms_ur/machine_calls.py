@@ -33,7 +33,6 @@ class MachineCalls(RunCalls):
         answers = {machine: Queue[StopMachine.Response](1) for machine in machines}
         with undisturbed(URGENT):
             drops = {one: self._ros.call_then(StopMachine, _stop(one), request, answers[one].put) for one in machines}
-        self._ros.loop.on_executor(lambda: None)  # so that it waits for these answers, too
 
         def answered(machine: str) -> Receipt:
             try:

@@ -2,7 +2,6 @@
 
 import threading
 from collections.abc import Callable
-from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -25,7 +24,6 @@ class Gateways:
         self.asked: dict[str, Callable[[Any], None]] = {}
         self.threads: set[int] = set()
         self.called, self.dropped = list[str](), list[str]()
-        self.loop = SimpleNamespace(on_executor=lambda step: None)
 
     def call_then(
         self, _kind: object, name: str, _request: object, answered: Callable[[Any], None]
