@@ -17,8 +17,16 @@ from tms_runtime.run import FIRST
 from tms_ur.machine_calls import MachineCalls
 
 SITE: Any = SimpleNamespace(file=SimpleNamespace(machines=(), pcs={}))
+
+
+def _unknown(ros: Any) -> MachineCalls:
+    ros.call_then = lambda *_: None
+    return MachineCalls(ros, SITE)
+
+
 WAYS: dict[str, Callable[[Any], Any]] = {
-    "the console": lambda ros: MachineCalls(ros, SITE).stop("zx200", SoftwareStop()),
+    "the console": lambda ros: MachineCalls(ros, SITE).stop(["zx200"], SoftwareStop())[0],
+    "the console, before it knows the gateway": lambda ros: _unknown(ros).stop(["zx200"], SoftwareStop())[0],
     "tms stop": lambda ros: stop(ros, "zx200"),
 }
 
@@ -33,6 +41,10 @@ def test_a_stop_is_sent_with_the_highest_priority(way: str, monkeypatch: pytest.
         cause = to_line(SoftwareStop())
         return StopMachine.Response(receipt=StopReceipt(machine="zx200", confirmed=True, cause=cause))
 
-    assert WAYS[way](SimpleNamespace(peer=lambda *_: None, call=call)).confirmed
+    def call_then(*args: Any) -> Callable[[], None]:
+        args[-1](call())
+        return lambda: None
+
+    assert WAYS[way](SimpleNamespace(peer=lambda *_: None, call=call, call_then=call_then)).confirmed
     assert (sent, given[-1]) == ([URGENT], 0)
     assert max(realtime for _, realtime in FIRST.values()) < URGENT
