@@ -49,6 +49,7 @@ help: ## this list
 
 setup: ## everything that the other targets need (they call it)
 	@$(MAKE) --no-print-directory --jobs=3 ready
+	@sh deploy/sockets.sh quiet
 	@$(PY) -m compileall -q -j 0 -x 'services/interfaces' services $(wildcard tests)  # where Python itself may not write it, each process would compile anew
 
 ready: $(VENV)/.ready $(if $(BUNDLE),$(if $(wildcard wheels/secantusdb-*),$(VENV)-store/.ready),$(VENV)-store/.ready $(BUILT))
@@ -127,11 +128,13 @@ ROLES := $(filter-out base,$(patsubst deploy/compose/%.yml,%,$(wildcard deploy/c
 up: ## start the mesh of this PC (SITE=name, ROLE=PC of a site with several, RUNTIME=docker)
 	@test -n "$(SITE)" -a -n "$(filter $(ROLES),$(ROLE))" || { echo "usage: make up SITE=yard ROLE=cps RUNTIME=docker (roles: $(ROLES); a PC with another name: PC=truck_pc ROLE=machine)" >&2; exit 2; }
 	@test -n "$(TMS_IMAGE)" || DOCKER=$(DOCKER) sh deploy/image.sh $(if $(filter trial,$(ROLE)),ros2-tms-trial demo,ros2-tms)
+	@sh deploy/sockets.sh
 	@$(COMPOSE_UP) up --detach
 down: ## end the mesh of this PC; no process stays
 	@$(COMPOSE_UP) down
 else
 up: setup ## start the mesh of this PC (SITE=name, ROLE=PC of a site with several, RUNTIME=docker)
+	@sh deploy/sockets.sh
 	@$(TMS) up $(if $(PC),--role $(PC))
 
 down: ## end the mesh of this PC; no process stays

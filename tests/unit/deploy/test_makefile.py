@@ -88,3 +88,10 @@ def test_a_pc_with_a_name_of_its_own_takes_its_roles_compose_file() -> None:
 @pytest.mark.parametrize("argv", [("ROLE=truck_pc",), ("ROLE=machine", "PC=truck_pc")])
 def test_without_containers_either_way_names_the_pc(built: str, argv: tuple[str, ...]) -> None:
     assert "--site genba up --role truck_pc" in make("up", built, "SITE=genba", *argv)
+
+
+@pytest.mark.parametrize("runtime", ["native", "docker"])
+def test_sockets_have_their_room_before_a_mesh_starts(runtime: str, built: str) -> None:
+    commands = make("up", "SITE=yard", "ROLE=cps", f"RUNTIME={runtime}", "TMS_IMAGE=ros2-tms", built).splitlines()
+    (start,) = [at for at, line in enumerate(commands) if " up --" in line]
+    assert "sh deploy/sockets.sh" in commands[:start]
