@@ -63,7 +63,7 @@ def undisturbed(realtime: int = 1) -> Iterator[None]:
     Threads that are started meanwhile do not come first: they read answers for some hundred milliseconds, and seven
     processes that started at once kept all others on the PC from its two processors for up to 2.8 s.
     """
-    before = threads()
+    before, policy, usual = threads(), os.sched_getscheduler(0), os.sched_getparam(0)
     try:
         os.sched_setscheduler(0, os.SCHED_FIFO | os.SCHED_RESET_ON_FORK, os.sched_param(realtime))
     except OSError:  # the system does not allow it, or does not have it
@@ -72,5 +72,5 @@ def undisturbed(realtime: int = 1) -> Iterator[None]:
     try:
         yield
     finally:
-        os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))
+        os.sched_setscheduler(0, policy, usual)
         come_first(os.getpriority(os.PRIO_PROCESS, 0), threads() - before)  # their share was reset as well

@@ -34,9 +34,10 @@ PR_SET_PDEATHSIG = 1
 # Nice and real-time priority of processes that must not miss a beat on a busy PC, once they have started: twenty that
 # start must not keep working ones from their beats, though each makes its participant with real-time priority 1. A
 # stand-in is a machine, which no PC can keep from its motions; the bridge carries what a simulated machine tells. The
-# ground must not fall behind machines: who needs a load waits for it. It has no beat, so no real-time priority.
+# ground must not fall behind machines: who needs a load waits for it. The console sends stops, though it has no beat.
 FIRST = {"tms_ts.node": (-15, 2), "tms_rc.node": (-12, 3), "tms_host.node": (-12, 3), "tms_sim.node": (-12, 3),
-         "tms_mc.node": (-12, 3), "tms_if.node": (-12, 3), "tms_ground.node": (-5, 0)}  # fmt: skip
+         "tms_mc.node": (-12, 3), "tms_if.node": (-12, 3), "tms_ground.node": (-5, 0),
+         "tms_ur.node": (-5, 1)}  # fmt: skip
 OF_A_MACHINE = (-5, 1)  # planner and subtasks, whose permits lapse as well
 STARTING = -5  # nice of all these while they start
 

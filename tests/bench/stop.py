@@ -13,12 +13,17 @@ import threading
 import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import ExitStack
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from bench.rig.mesh import until
 from bench.runner import Figure
 from conftest import claimed_domain
+from tms_config.config import Site
+from tms_config.processes import find
 from tms_decision.permit_link import LEASE
+from tms_runtime.metrics import unready
 from tms_ts.bt import load
 from unit.tms_ts.fakes import FakeMachines, FakeWorld
 
@@ -50,10 +55,14 @@ def measure() -> Iterable[Figure]:
             log = stack.enter_context((folder / f"{name}.log").open("w"))
             stack.enter_context(process("-m", "tms_runtime.run", f"{name}:rc", stdout=log, stderr=log))
         hurry()
-        yield from _stops(stack, site, process, BURN)
+        log = stack.enter_context((folder / "console.log").open("w"))
+        console = partial(process, "-m", "tms_runtime.run", "tms:ur", stdout=log, stderr=log)
+        yield from _stops(stack, site, process, console, BURN)
 
 
-def _stops(stack: ExitStack, site: object, process: Callable[..., object], burn: str) -> Iterator[Figure]:
+def _stops(
+    stack: ExitStack, site: Site, process: Callable[..., Any], console: Callable[[], Any], burn: str
+) -> Iterator[Figure]:
     from bench.yard.machines import Yard
 
     yard = Yard(site)
@@ -61,17 +70,21 @@ def _stops(stack: ExitStack, site: object, process: Callable[..., object], burn:
     yard.arm()
     for command in (("-c", burn), ("-c", burn), (RELAY,)):
         stack.enter_context(process(*command))
-    presses = [late for _ in range(PRESSES) for late in _press(yard)]
+    presses = [late for _ in range(PRESSES) for late in _press(yard, yard.press)]
     floor = _relayed(yard)
     yield Figure("press p99", "ms", _p99(presses), 30.0, _p99(floor), usual_floor=20.0)
     yield Figure("spin p99", "ms", _p99([_spin() for _ in range(SPINS)]), 100.0, _p99([_wake() for _ in range(SPINS)]))
     kills = [late for number in range(KILLS) for late in _kill(yard, number + 1, process)]
     yield Figure("kill max", "ms", max(kills), 700.0, LEASE * 1000)
+    stack.enter_context(console())
+    until(lambda: unready(find(site, "tms:ur")) is None, "the console is there")
+    clicks = [late for _ in range(PRESSES) for late in _press(yard, yard.click)]
+    yield Figure("press in the console p99", "ms", _p99(clicks), 100.0, _p99(floor), usual_floor=20.0)
 
 
-def _press(yard: Yard) -> list[float]:
+def _press(yard: Yard, press: Callable[[], list[float]]) -> list[float]:
     yard.move()
-    late = yard.press()
+    late = press()
     yard.arm()
     return late
 

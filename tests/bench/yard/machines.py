@@ -11,6 +11,8 @@ import time
 from array import array
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from http import HTTPStatus
+from http.client import HTTPConnection
 from pathlib import Path
 from typing import Any
 
@@ -51,7 +53,7 @@ def names() -> list[str]:
 def make_site(folder: Path, domain: int) -> Site:
     machines = {name: {"model": MODEL} for name in names()}
     file = folder / "site.yaml"
-    file.write_text(yaml.safe_dump(site_data(domain, ports_of(domain), machines=machines, services={})))
+    file.write_text(yaml.safe_dump(site_data(domain, ports_of(domain), machines=machines, services={"ur": {}})))
     os.environ.update({"TMS_SITE": str(file), "TMS_STATE": str(folder / "state")})
     os.environ.pop("ROS_DOMAIN_ID", None)
     site = load_site()
@@ -194,6 +196,18 @@ class Yard:
             begun = time.time_ns()
             self._button.publish(Bool(data=True))
         return self.stopped_since(begun)
+
+    def click(self) -> list[float]:
+        """The software stop of the console's API; ms from the request to each gateway's zero velocities."""
+        console = HTTPConnection("127.0.0.1", self._site.file.ports.console, timeout=LIMIT)
+        console.connect()
+        with undisturbed(URGENT):
+            begun = time.time_ns()
+            console.request("POST", "/api/stop", "{}", {"Content-Type": "application/json"})
+        late = self.stopped_since(begun)
+        assert console.getresponse().status == HTTPStatus.OK
+        console.close()
+        return late
 
     def stopped_since(self, begun: int) -> list[float]:
         """ms from `begun` (ns since 1970) to each gateway's zero velocities."""

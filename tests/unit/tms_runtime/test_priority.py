@@ -7,8 +7,10 @@ import threading
 import time
 from pathlib import Path
 
+import pytest
+
 from conftest import wait_until
-from tms_runtime.priority import session_first, threads, waited
+from tms_runtime.priority import URGENT, session_first, threads, undisturbed, waited
 
 
 def test_a_thread_that_shares_its_processor_has_waited_for_it() -> None:
@@ -47,3 +49,15 @@ def test_a_session_gets_its_share_where_the_system_allows_it() -> None:
     finally:
         child.kill()
         child.wait()
+
+
+def test_who_was_urgent_has_its_own_priority_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A thread of the console that has sent a stop serves the next one."""
+    given = list[tuple[int, int]]()
+    monkeypatch.setattr(os, "sched_getscheduler", lambda _pid: os.SCHED_RR)
+    monkeypatch.setattr(os, "sched_getparam", lambda _pid: os.sched_param(1))
+    note = lambda _pid, policy, param: given.append((policy, param.sched_priority))  # noqa: E731
+    monkeypatch.setattr(os, "sched_setscheduler", note)
+    with undisturbed(URGENT):
+        assert given == [(os.SCHED_FIFO | os.SCHED_RESET_ON_FORK, URGENT)]
+    assert given[1:] == [(os.SCHED_RR, 1)]
