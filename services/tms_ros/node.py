@@ -25,7 +25,7 @@ class Ros:
         self.loop = loop = EventLoop(name, namespace, process, creating)
         self.topics = topics = Topics(loop)
         self.services = services = Services(loop)
-        self._served = ActionServers(loop, topics)
+        self._served = ActionServers(loop)
         self._peers: dict[str, AnyPeer] = {}
         self._making = threading.Lock()
 

@@ -77,6 +77,10 @@ class NamingActionServer(ActionServer):  # type: ignore[misc]
         self.arriving = request_header_and_message[1].goal_id
         await super()._execute_goal_request(request_header_and_message)
 
+    def tell(self, goal_id: UUID, feedback: Any) -> None:
+        """Send feedback of a goal that is not accepted."""
+        self._handle.publish_feedback(self.action_type.Impl.FeedbackMessage(goal_id=goal_id, feedback=feedback))
+
 
 class SureActionClient(ActionClient):  # type: ignore[misc]
     """An action client that takes all waiting feedback before a result or a rejection.

@@ -23,7 +23,6 @@ from tms_ros.loop import POLL, EventLoop
 from tms_ros.privates import NamingActionServer
 from tms_ros.quality import SERVICE
 from tms_ros.reasons import BeingStopped, StoppedMeanwhile
-from tms_ros.topics import Topics
 
 RESULT_KEPT = 10  # s that a server keeps a result; every status message lists all kept goals
 
@@ -71,8 +70,8 @@ AnyGoal = Goal[Any, Any]  # of any action
 class ActionServers:
     """The actions that one node serves, and their open goals."""
 
-    def __init__(self, loop: EventLoop, topics: Topics) -> None:
-        self._loop, self._topics = loop, topics
+    def __init__(self, loop: EventLoop) -> None:
+        self._loop = loop
         # By action and id; a goal as an attribute of its handle would be a cycle, which is freed late.
         self._goals: dict[tuple[str, bytes], AnyGoal] = {}
         self._leaving = False
@@ -98,9 +97,6 @@ class ActionServers:
         `run` must return soon after `goal.cancelled` is set. When it raises, the goal is aborted and the
         traceback logged.
         """
-        whole: Any = action_type
-        telling = whole.Impl.FeedbackMessage
-        reasons = self._topics.publisher(telling, f"{name}/_action/feedback")
 
         async def decide(request: G) -> GoalResponse:
             goal_id = server.arriving  # valid until the first await
@@ -115,7 +111,7 @@ class ActionServers:
             self._loop.node.get_logger().debug(f"{name}: {verdict!r}")
             feedback = _saying(action_type, verdict)
             if feedback is not None:
-                reasons.publish(telling(goal_id=goal_id, feedback=feedback))
+                server.tell(goal_id, feedback)
             return GoalResponse.REJECT
 
         server = NamingActionServer(

@@ -84,6 +84,7 @@ def test_ids_that_arrive_and_feedback_that_comes_before_its_result(
     there.serve(LeafNodeBase, "/privates/leaf", run, accept)
     peer = here.peer(LeafNodeBase, "/privates/leaf")
     peer.wait_ready(LIMIT)
+    assert here.node.count_publishers("/privates/leaf/_action/feedback") == 1  # which also says why a goal is refused
     said: list[str] = []
     call: Call[Any, Any] = peer.send(
         LeafNodeBase.Goal(), goal_id=b"0123456789abcdef", on_feedback=lambda f: said.append(f.status)
