@@ -24,7 +24,7 @@ class App:
         self.hanging = Hanging(ros)
         self.log = log
         self.stopping = threading.Event()
-        self._unready: Callable[[], Reason | None] = ProcessStarting
+        self.unready: Callable[[], Reason | None] = ProcessStarting  # why the process cannot do its job now, or None
         self._cleanup: list[Callable[[], None]] = []
 
     @property
@@ -35,11 +35,7 @@ class App:
 
     def ready_when(self, unready: Callable[[], Reason | None]) -> None:
         """Set the function that returns why this process cannot work now, or None if it can."""
-        self._unready = unready
-
-    def unready(self) -> Reason | None:
-        """Why the process cannot do its job now, or None."""
-        return self._unready()
+        self.unready = unready
 
     def on_stop(self, step: Callable[[], None]) -> None:
         """Run `step` when the process stops, last registered first; it must be quick."""

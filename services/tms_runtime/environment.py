@@ -10,12 +10,14 @@ from tms_runtime import addresses, state_folder
 # everything above 32 participants, and shared memory leaks with every killed process.
 PROFILE = PROJECT / "deploy" / "dds" / "loopback.xml"
 ON_LOOPBACK = {
-    "ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET",
+    "ROS_AUTOMATIC_DISCOVERY_RANGE": "SYSTEM_DEFAULT",  # as the profile says
     "FASTRTPS_DEFAULT_PROFILES_FILE": str(PROFILE),
     "RMW_FASTRTPS_USE_QOS_FROM_XML": "1",  # heartbeats: see the profile
 }
 LOOPBACK = "<address>127.0.0.1</address>"
 MULTICAST = "<avoid_builtin_multicast>false<", "<avoid_builtin_multicast>true<"  # one PC; several
+TELLS_ALL = {"ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET"}  # by multicast, too
+FIRST_FOUR = "<initialPeersList><locator><udpv4><address>127.0.0.1</address></udpv4></locator></initialPeersList>"
 
 
 def environment(site: Site) -> dict[str, str]:
@@ -31,6 +33,7 @@ def environment(site: Site) -> dict[str, str]:
         **discovery,
         **({"TMS_PC": site.pc} if site.pc else {}),
         **ON_LOOPBACK,
+        **(TELLS_ALL if site.file.pcs else {}),
         "ROS_DOMAIN_ID": str(site.domain),
         "ROS_LOG_DIR": str(site.state / "ros"),
         "FASTRTPS_DEFAULT_PROFILES_FILE": str(_profile(site)),
@@ -44,12 +47,12 @@ def environment(site: Site) -> dict[str, str]:
 
 
 def _profile(site: Site) -> Path:
-    """The loopback profile; on a site of several PCs, a copy with this PC's address, and less multicast."""
+    """The loopback profile; on a site of several PCs, a copy with this PC's address and other multicast."""
     if not site.file.pcs:
         return PROFILE
     address = addresses.resolve(site, site.file.pcs[site.require_pc()].address)
     path = site.state / "dds.xml"
-    text = PROFILE.read_text(encoding="utf-8").replace(*MULTICAST)
+    text = PROFILE.read_text(encoding="utf-8").replace(*MULTICAST).replace(FIRST_FOUR, "")
     text = text.replace(LOOPBACK, f"<address>{address}</address>{LOOPBACK}")
     if not path.exists() or path.read_text(encoding="utf-8") != text:
         state_folder.make(site.state)
@@ -58,8 +61,8 @@ def _profile(site: Site) -> Path:
     return path
 
 
-def enter(site: Site) -> None:
-    """Give this process the environment of the site, for programs that a person starts."""
-    os.environ.update(environment(site))
+def enter(site: Site, *, tells_all: bool = False) -> None:
+    """Give this process the environment of the site; some tell all others that they are there."""
+    os.environ.update(environment(site) | (TELLS_ALL if tells_all else {}))
     state_folder.make(site.state)
     (site.state / "ros").mkdir(mode=0o700, exist_ok=True)

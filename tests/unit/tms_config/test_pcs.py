@@ -90,6 +90,13 @@ def test_dds_uses_the_pcs_address_and_loopback(tmp_path: Path, monkeypatch: pyte
     profile = Path(environment(site(tmp_path))["FASTRTPS_DEFAULT_PROFILES_FILE"]).read_text()
     assert "<address>10.9.0.20</address><address>127.0.0.1</address>" in profile
     assert "<avoid_builtin_multicast>true</avoid_builtin_multicast>" in profile  # a network may lose multicast
+    assert "initialPeersList" not in profile  # which names processes of one PC
+
+
+def test_all_processes_of_several_pcs_tell_others_by_multicast(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("TMS_PC", "machine")
+    assert environment(site(tmp_path))["ROS_AUTOMATIC_DISCOVERY_RANGE"] == "SUBNET"
+    assert environment(site(tmp_path, pcs={}))["ROS_AUTOMATIC_DISCOVERY_RANGE"] == "SYSTEM_DEFAULT"
 
 
 def test_a_discovery_server_runs_on_the_cps_pc(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
