@@ -10,13 +10,13 @@ from tms_runtime import addresses, state_folder
 # everything above 32 participants, and shared memory leaks with every killed process.
 PROFILE = PROJECT / "deploy" / "dds" / "loopback.xml"
 ON_LOOPBACK = {
-    "ROS_AUTOMATIC_DISCOVERY_RANGE": "SYSTEM_DEFAULT",  # as the profile says
+    "ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET",  # who starts tells all others by multicast
     "FASTRTPS_DEFAULT_PROFILES_FILE": str(PROFILE),
     "RMW_FASTRTPS_USE_QOS_FROM_XML": "1",  # heartbeats: see the profile
 }
 LOOPBACK = "<address>127.0.0.1</address>"
 MULTICAST = "<avoid_builtin_multicast>false<", "<avoid_builtin_multicast>true<"  # one PC; several
-TELLS_ALL = {"ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET"}  # by multicast, too
+TELLS_FEW = {"ROS_AUTOMATIC_DISCOVERY_RANGE": "SYSTEM_DEFAULT"}  # those that the profile names
 FIRST_FOUR = "<initialPeersList><locator><udpv4><address>127.0.0.1</address></udpv4></locator></initialPeersList>"
 
 
@@ -33,7 +33,6 @@ def environment(site: Site) -> dict[str, str]:
         **discovery,
         **({"TMS_PC": site.pc} if site.pc else {}),
         **ON_LOOPBACK,
-        **(TELLS_ALL if site.file.pcs else {}),
         "ROS_DOMAIN_ID": str(site.domain),
         "ROS_LOG_DIR": str(site.state / "ros"),
         "FASTRTPS_DEFAULT_PROFILES_FILE": str(_profile(site)),
@@ -61,8 +60,8 @@ def _profile(site: Site) -> Path:
     return path
 
 
-def enter(site: Site, *, tells_all: bool = False) -> None:
-    """Give this process the environment of the site; some tell all others that they are there."""
-    os.environ.update(environment(site) | (TELLS_ALL if tells_all else {}))
+def enter(site: Site, *, tells_few: bool = False) -> None:
+    """Give this process the environment of the site; one may tell a few others only that it is there."""
+    os.environ.update(environment(site) | (TELLS_FEW if tells_few and not site.file.pcs else {}))
     state_folder.make(site.state)
     (site.state / "ros").mkdir(mode=0o700, exist_ok=True)

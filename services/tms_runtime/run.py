@@ -55,7 +55,7 @@ def main(name: str) -> int:
                 importlib.import_module(row.module).exec_program(site)
             if row.form:
                 wire_form.enter(row.form)
-            environment.enter(site, tells_all=row.machine is None)
+            environment.enter(site, tells_few=row.machine is not None)
             return _serve(site, row, leaving)
         except ConfigError as error:
             print(f"{name}: {error}", file=sys.stderr)

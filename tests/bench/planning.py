@@ -49,7 +49,7 @@ from tms_rp.ways import Ways
 
 GOALS = 500
 AROUND = 1000  # scenes
-IN_MEMORY = 50  # scenes for the memory
+IN_MEMORY = 150, 50  # digs and scenes for the memory
 TRAJECTORY = 1.0  # ms for a straight trajectory on a usual PC
 SITES = 200  # with five machines
 FASTEST = 2.0  # ms for the fastest path of tracks on a usual PC
@@ -62,7 +62,8 @@ if sys.argv[1] == "all":
     import tms_rp.kinds.backhoe
     import tms_rp.node
     from bench.planning import IN_MEMORY, dig, plan_all, plan_around
-    plan_all(dig), plan_around(IN_MEMORY)
+    digs, scenes = IN_MEMORY
+    plan_all(dig, digs), plan_around(scenes)
 print(re.search(r"VmHWM:\\s+(\\d+)", pathlib.Path("/proc/self/status").read_text())[1])
 """
 
@@ -106,7 +107,7 @@ def dig(backhoe: Backhoe, place: TipGoal) -> Moves:
     return excavate(backhoe, NOW, Dig(place, depth=0.5, drag=1.5, lift=0.5))
 
 
-def plan_all(goal: Asked) -> tuple[list[float], list[float]]:
+def plan_all(goal: Asked, count: int = GOALS) -> tuple[list[float], list[float]]:
     """Milliseconds of each goal that needs no way around, and of its kinematics."""
     model, truck = model_of("zx200"), model_of("ic120")
     backhoe, ways, rng = Backhoe(model), Ways(model, load("backhoe")), random.Random(1)
@@ -118,7 +119,7 @@ def plan_all(goal: Asked) -> tuple[list[float], list[float]]:
         )
     )
     times, floors = [], []
-    for _ in range(GOALS):
+    for _ in range(count):
         away, turn = rng.uniform(4, 8), rng.uniform(-math.pi, math.pi)
         place = TipGoal(away * math.cos(turn), away * math.sin(turn), rng.uniform(-1, 2), rng.uniform(0, 2))
         with contextlib.suppress(SubtaskFailed):  # out of reach, or in a truck

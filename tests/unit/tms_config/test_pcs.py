@@ -1,5 +1,6 @@
 """A site of several PCs: who runs what, under which address, and every mistake in it."""
 
+import os
 from pathlib import Path
 from typing import Any
 
@@ -24,7 +25,7 @@ from tms_config.site_file import ROLES
 from tms_reason.errors import ConfigError
 from tms_reason.reason import Reason
 from tms_reason.reasons import MissingKey, UnknownKey
-from tms_runtime.environment import environment
+from tms_runtime.environment import enter, environment
 
 PCS = {
     "cps": {"address": "10.9.0.10"},
@@ -93,10 +94,15 @@ def test_dds_uses_the_pcs_address_and_loopback(tmp_path: Path, monkeypatch: pyte
     assert "initialPeersList" not in profile  # which names processes of one PC
 
 
-def test_all_processes_of_several_pcs_tell_others_by_multicast(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize(("pcs", "told"), [(PCS, "SUBNET"), ({}, "SYSTEM_DEFAULT")], ids=["several PCs", "one PC"])
+def test_processes_of_several_pcs_tell_all_others(
+    pcs: dict[str, object], told: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setenv("TMS_PC", "machine")
-    assert environment(site(tmp_path))["ROS_AUTOMATIC_DISCOVERY_RANGE"] == "SUBNET"
-    assert environment(site(tmp_path, pcs={}))["ROS_AUTOMATIC_DISCOVERY_RANGE"] == "SYSTEM_DEFAULT"
+    with monkeypatch.context() as patch:
+        patch.setattr(os, "environ", dict(os.environ))
+        enter(site(tmp_path, pcs=pcs), tells_few=True)
+        assert os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] == told
 
 
 def test_a_discovery_server_runs_on_the_cps_pc(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
