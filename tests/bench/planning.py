@@ -1,6 +1,6 @@
 """How long an excavator's planner needs from a goal to a checked trajectory, how long a cycle takes, what it weighs.
 
-Straight ways: 500 random places around the machine, between two trucks; digs: the same places. Ways around: 1,000
+Straight ways: 300 random places around the machine, between two trucks; digs: the same places. Ways around: 800
 random scenes, in which boxes stand and hang around the machine. A cycle of digging and loading: its two trajectories,
 and the lag of the machine at the end of each. The floor of the time is the kinematics or the trajectory alone, of the
 cycle its two swings; that of the memory a process that has only imported rclpy.
@@ -47,8 +47,8 @@ from tms_rp.scene import Obstacle, Scene
 from tms_rp.trajectory import trajectory
 from tms_rp.ways import Ways
 
-GOALS = 500
-AROUND = 1000  # scenes
+GOALS = 300
+AROUND = 800  # scenes
 IN_MEMORY = 150, 50  # digs and scenes for the memory
 TRAJECTORY = 1.0  # ms for a straight trajectory on a usual PC
 SITES = 200  # with five machines
