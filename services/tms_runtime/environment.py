@@ -14,9 +14,9 @@ ON_LOOPBACK = {
     "FASTRTPS_DEFAULT_PROFILES_FILE": str(PROFILE),
     "RMW_FASTRTPS_USE_QOS_FROM_XML": "1",  # heartbeats: see the profile
 }
+TELLS_FEW = {"ROS_AUTOMATIC_DISCOVERY_RANGE": "SYSTEM_DEFAULT"}  # those that the profile names
 LOOPBACK = "<address>127.0.0.1</address>"
 MULTICAST = "<avoid_builtin_multicast>false<", "<avoid_builtin_multicast>true<"  # one PC; several
-TELLS_FEW = {"ROS_AUTOMATIC_DISCOVERY_RANGE": "SYSTEM_DEFAULT"}  # those that the profile names
 FIRST_FOUR = "<initialPeersList><locator><udpv4><address>127.0.0.1</address></udpv4></locator></initialPeersList>"
 
 
@@ -61,7 +61,7 @@ def _profile(site: Site) -> Path:
 
 
 def enter(site: Site, *, tells_few: bool = False) -> None:
-    """Give this process the environment of the site; one may tell a few others only that it is there."""
+    """Give this process the environment of the site; with `tells_few`, only a few others hear of it at first."""
     os.environ.update(environment(site) | (TELLS_FEW if tells_few and not site.file.pcs else {}))
     state_folder.make(site.state)
     (site.state / "ros").mkdir(mode=0o700, exist_ok=True)

@@ -196,7 +196,7 @@ def find(node: Node, count: str) -> list[float]:
 
 def fleet(count: str, kind: str = "") -> None:
     """Forks, so that imports are paid once; each child leaves when its parent does. `acting` ones serve an action."""
-    os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "SYSTEM_DEFAULT"  # as processes of machines have it, which most are
+    os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "SYSTEM_DEFAULT"  # TELLS_FEW; a bare node imports nothing of ours
     left, right = os.pipe()
     for number in range(int(count)):
         if os.fork() == 0:
