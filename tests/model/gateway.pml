@@ -81,7 +81,7 @@ inline send_goal(g, m) {
 	promise(run_of(current[g]) == sees_run[g]);                      /* one owner */
 	promise(g < MACHINES);                                           /* a second gateway moves nothing */
 	promise(!(away[g] && duty[m] && host == UP));                    /* the host agent does not command the machine */
-	goal_flies[m] = current[g]; goal_from[m] = g; phase[g] = SENT; outcome[g] = 0
+	goal_flies[m] = current[g]; phase[g] = SENT; outcome[g] = 0
 }
 
 inline start_gateway(g, m) {

@@ -16,7 +16,7 @@ inline end_machine(m, r) { /* has the machine of a run stopped for good */
 		:: leaf[m] == OPEN && relay[m] != DOWN && serves[m] != 0 && (waiting[m] == serves[m] || current[m] == serves[m]) -> cancelled[m] = 1
 		:: else
 		fi;
-		leaf[m] = ENDS; receipt[m] = 0; relay_new[m] = 0
+		leaf[m] = ENDS; tries[m] = 0; receipt[m] = 0; relay_new[m] = 0
 	:: else
 	fi
 }
@@ -91,7 +91,7 @@ end:	do
 		asked_stop[m] = 1; begin_stop(m, ARMED) }
 	:: atomic { scheduler == UP && leaf[m] == AGAIN && (receipt[m] == GOOD || receipt[m] == BAD) -> receipt[m] = 0; leaf[m] = NEXT }
 	:: atomic { scheduler == UP && leaf[m] == ENDS && (receipt[m] == GOOD || receipt[m] == BAD) -> receipt[m] = 0; leaf[m] = STOOD }
-	:: atomic { scheduler == UP && leaf[m] == ENDS && gateway[m] != UP -> receipt[m] = 0; leaf[m] = STOOD } /* no receipt in its time */
+	:: atomic { scheduler == UP && leaf[m] == ENDS && gateway[m] != UP -> receipt[m] = 0; asked_stop[m] = 0; leaf[m] = STOOD } /* no receipt in its time */
 	:: atomic { scheduler == UP && runs[m] != 0 && leaf[m] != ENDS && leaf[m] != STOOD && (shown[m] || hears_press) ->
 		r = runs[m]; end_run(r); r = 0 }
 	:: atomic { scheduler == UP && cancels < CANCELS && runs[m] != 0 && leaf[m] != ENDS && leaf[m] != STOOD -> count(cancels);
@@ -113,7 +113,7 @@ end:	do
 		:: leaf[m] == OPEN && r == GOOD -> 
 			if
 			:: tries[m] < GOALS || EITHER -> leaf[m] = NEXT
-			:: tries[m] >= GOALS || EITHER -> leaf[m] = DONE
+			:: tries[m] >= GOALS || EITHER -> leaf[m] = DONE; tries[m] = 0
 			fi
 		:: leaf[m] == OPEN && r == LOST -> leaf[m] = AGAIN
 		:: leaf[m] == OPEN && r == BAD -> leaf[m] = NEXT; r = runs[m];

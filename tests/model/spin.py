@@ -63,7 +63,7 @@ def compile_model(definitions: list[str], folder: Path, flags: list[str]) -> Non
     """Make the verifier `pan` in a folder."""
     call(["spin", "-a", *definitions, str(SITE)], folder, 60.0)
     limits = [f"-DMEMLIM={MEMORY}", "-DVECTORSZ=4096", "-DNOREDUCE", "-DNOFAIR"]
-    call(["gcc", "-O2", "-w", *limits, *flags, "-o", "pan", "pan.c"], folder, 240.0)
+    call(["gcc", "-O1", "-w", *limits, *flags, "-o", "pan", "pan.c"], folder, 240.0)
 
 
 def call(words: list[str], folder: Path, seconds: float) -> str:

@@ -13,7 +13,7 @@ byte gateway[GATEWAYS], relay[MACHINES], scheduler, host;
 /* machines, and what is on its way to them: one may overtake the other */
 byte body[MACHINES], at_server[MACHINES], sick[MACHINES];
 bit endless[MACHINES]; /* its goal does not end by itself */
-byte goal_flies[MACHINES], goal_from[MACHINES];
+byte goal_flies[MACHINES];
 bit cancel_flies[MACHINES], host_cancels[MACHINES];
 byte outcome[GATEWAYS]; /* of the goal that this gateway has sent; on its way to it */
 
@@ -55,7 +55,7 @@ byte stopped[GATEWAYS];  /* a person has pressed stop, this gateway has received
 bit heard[MACHINES];     /* the host agent, too, has received the press, and was neither killed nor frozen since */
 bit known[GATEWAYS];     /* the disk knows of a latch, and nobody has re-armed */
 bit away[GATEWAYS];      /* it was started while the host agent commanded its machine */
-byte newest[MACHINES];   /* the newest run whose goal the machine has accepted */
+byte older[MACHINES];    /* the run before the newest whose goal the machine has accepted */
 
 #ifdef HISTORY
 short position, wanted;

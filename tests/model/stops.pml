@@ -17,7 +17,7 @@ inline write_latch(g) {
 }
 
 inline close_latch(g) {
-	latch[g] = LATCHED; held_run[g] = 0; held_goal[g] = 0; shown[g] = 1;
+	latch[g] = LATCHED; held_run[g] = 0; held_goal[g] = 0; holder[g] = 0; shown[g] = 1; /* only a re-arm ends it: nobody holds it then */
 	if
 	:: rearm[g] == 1 -> rearm[g] = 0
 #ifndef REARM_NOT_VOID

@@ -12,7 +12,7 @@ inline kill_relay(m) {
 }
 
 inline forget_run(m) {
-	runs[m] = 0; leaf[m] = 0; tries[m] = 0; receipt[m] = 0; relay_new[m] = 0; silent[m] = (says[m] != 0)
+	runs[m] = 0; leaf[m] = 0; tries[m] = 0; receipt[m] = 0; relay_new[m] = 0; asked_stop[m] = 0; silent[m] = (says[m] != 0)
 }
 
 inline forget_duty(m) {
