@@ -62,7 +62,7 @@ def _figures(own: Rig, ros: Ros, scheduler: int, crowds: list[subprocess.Popen[s
     with consoles(own.site.file.ports.console):
         time.sleep(SETTLE)
         ((late, handed_over, slow, cpu),) = watched({find(own.site, "tms:ts"): scheduler})
-        early = len(receipts)
+        early, why = len(receipts), sorted({f"{one.cause} {one.detail}" for one in receipts.values()})
         receipts.clear()
         pressed = dispatcher.press(ros, len(crowds) + len(REAL))
         after_press(pressed, crowds)
@@ -73,7 +73,7 @@ def _figures(own: Rig, ros: Ros, scheduler: int, crowds: list[subprocess.Popen[s
     yield Figure("late ticks", "%", late, 1.0, note=f"hand-over {handed_over:.1f} ms")
     yield Figure(f"hand-overs over {1000 * SLOW:.0f} ms", "%", slow, 1.0)
     yield Figure("processor time of tms:ts", "% core", cpu, 80.0)
-    yield Figure("of ten, stopped before the press", "", float(early), 0.5)
+    yield Figure("of ten, stopped before the press", "", float(early), 0.5, note="; ".join(why))
     yield Figure("stop begun by the last of ten", "ms", 1000 * begun - pressed / 1e6, 50.0)
     yield Figure(f"runs left after {END_LIMIT:.0f} s", "", float(left), 0.5)
     yield Figure("of ten, not proven to stand", "", float(wrong), 0.5)
