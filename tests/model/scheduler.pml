@@ -38,7 +38,7 @@ inline take(m, r) {
 
 inline drop(m, r) {
 	if
-	:: runs[m] == (r) -> says[m] = 0; silent[m] = 0; runs[m] = 0; leaf[m] = 0; tries[m] = 0; receipt[m] = 0
+	:: runs[m] == (r) -> says[m] = 0; silent[m] = 0; runs[m] = 0; leaf[m] = 0
 	:: else
 	fi
 }

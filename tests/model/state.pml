@@ -1,5 +1,6 @@
 /* Everything that a state of the site consists of. m: a machine; g: a gateway, which serves machine g % MACHINES;
-   g >= MACHINES is a second gateway that somebody has started on another PC. Goal k is the k-th that may be sent. */
+   g >= MACHINES is a second gateway that somebody has started on another PC. Goal k is the k-th that may be sent.
+   What nothing will read any more is 0: states that differ in it only would be explored twice. */
 
 #define machine_of(g) ((g) % MACHINES)
 #define run_of(k) (((k) + TRIES - 1) / TRIES)
@@ -55,7 +56,7 @@ byte stopped[GATEWAYS];  /* a person has pressed stop, this gateway has received
 bit heard[MACHINES];     /* the host agent, too, has received the press, and was neither killed nor frozen since */
 bit known[GATEWAYS];     /* the disk knows of a latch, and nobody has re-armed */
 bit away[GATEWAYS];      /* it was started while the host agent commanded its machine */
-byte older[MACHINES];    /* the run before the newest whose goal the machine has accepted */
+byte older[MACHINES];    /* the run before the newest whose goal the machine has accepted; 0: there is none, or no goal yet */
 
 #ifdef HISTORY
 short position, wanted;
